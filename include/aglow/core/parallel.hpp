@@ -1,0 +1,92 @@
+// The one seam through which work is spread over threads; the threads are the host's to choose.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <concepts>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace aglow {
+
+/// Something that runs `task(i)` once for every i in [0, count), in any order and on any threads, and returns when all
+/// are done. A host plugs in its own pool with one lambda:
+/// `[](std::size_t count, auto&& task) { tbb::parallel_for(std::size_t{0}, count, task); }`.
+template <typename E>
+concept Executor = requires(const E& run, void (*task)(std::size_t)) {
+    run(std::size_t{}, task);
+};
+
+/// Runs every task in turn on the calling thread.
+struct in_sequence {
+    template <std::invocable<std::size_t> Task>
+    void operator()(std::size_t count, Task&& task) const {
+        for (std::size_t i = 0; i < count; ++i) { task(i); }
+    }
+};
+
+/// Runs tasks on `count` threads that live as long as the call; the caller's own thread is one of them.
+/// Rethrows the exception of the lowest task that threw.
+class own_threads {
+public:
+    /// As many threads as the machine has cores.
+    own_threads() : own_threads(std::max(1u, std::thread::hardware_concurrency())) {}
+    explicit own_threads(unsigned count) : count_{std::max(1u, count)} {}
+
+    [[nodiscard]] unsigned count() const { return count_; }
+
+    template <std::invocable<std::size_t> Task>
+    void operator()(std::size_t tasks, Task&& task) const {
+        if (count_ == 1 || tasks < 2) { return in_sequence{}(tasks, task); }
+        shared state{.tasks = tasks};
+        {
+            std::vector<std::jthread> crew;
+            const std::size_t helpers = std::min<std::size_t>(count_, tasks) - 1;
+            for (std::size_t i = 0; i < helpers; ++i) {
+                crew.emplace_back([&] { work(state, task); });
+            }
+            work(state, task);
+        }
+        if (state.failure) { std::rethrow_exception(state.failure); }
+    }
+
+private:
+    struct shared {
+        std::size_t tasks;
+        std::atomic<std::size_t> next{0};
+        std::mutex guard{};
+        std::size_t failed{static_cast<std::size_t>(-1)};
+        std::exception_ptr failure{};
+    };
+
+    template <typename Task>
+    static void work(shared& state, Task& task) {
+        for (std::size_t i = state.next++; i < state.tasks; i = state.next++) {
+            try {
+                task(i);
+            } catch (...) {
+                const std::scoped_lock lock{state.guard};
+                if (i < state.failed) {
+                    state.failed = i;
+                    state.failure = std::current_exception();
+                }
+            }
+        }
+    }
+
+    unsigned count_;
+};
+
+/// Splits [0, count) into blocks of `block` items and runs `body(block_index, first, last)` for each. The blocks do not
+/// depend on the number of threads, so what is joined in block order is the same for any number.
+template <Executor E, typename Body>
+void for_each_block(const E& run, std::size_t count, std::size_t block, Body&& body) {
+    const std::size_t blocks = (count + block - 1) / block;
+    run(blocks, [&](std::size_t i) { body(i, i * block, std::min(count, (i + 1) * block)); });
+}
+
+}  // namespace aglow
