@@ -1,0 +1,70 @@
+// What a host's lights must be able to do: send photons out, and be seen from a point.
+#pragma once
+
+#include <concepts>
+#include <limits>
+#include <type_traits>
+
+#include <aglow/concepts/intersector.hpp>
+#include <aglow/concepts/sampler.hpp>
+#include <aglow/concepts/spectrum.hpp>
+#include <aglow/core/ray.hpp>
+
+namespace aglow {
+
+/// One particle on its way: it carries `power`, in watts, along `path`.
+template <Spectrum S, std::floating_point T>
+struct emission {
+    ray<T> path{};
+    S power{};
+};
+
+/// One look from a point at a light: unit direction `towards` it, `distance` to it (infinite for the sky), the radiance
+/// that comes along it over the density of the choice, and that density per steradian (0 for a delta light, which no
+/// scattered ray can meet).
+template <Spectrum S, std::floating_point T>
+struct illumination {
+    vec3<T> towards{};
+    T distance{std::numeric_limits<T>::infinity()};
+    S radiance_over_pdf{};
+    T pdf{};
+};
+
+/// A light that sends out particles: what photon tracing asks.
+/// Must be true: the mean of `power` is the light's power in watts.
+template <typename L>
+concept Emitter = requires(const L& light, random_sampler<scalar_of<L>>& random) {
+    { light.emit(random).power } -> Spectrum;
+    { light.emit(random).path } -> std::convertible_to<ray<scalar_of<L>>>;
+};
+
+/// A light that can be looked at: what direct light asks. `illuminate(point, random)` is an optional-like `illumination`,
+/// empty where the light cannot shine on the point.
+/// - optional `pdf(point, towards, hit)`: the density per steradian with which `illuminate(point)` looks at `hit`, met
+///   from `point` along `towards`; 0 for what is no light. With it, emission that scattered rays meet is weighed in
+///   (multiple importance sampling); without it, only what `illuminate` cannot find (seen by the eye or in a mirror)
+///   counts.
+/// - optional `escaped(direction)`: radiance that comes from beyond the scene, from `direction`; and
+///   `escaped_pdf(point, direction)`: the density with which `illuminate` looks there.
+///
+/// Must be true: the mean of radiance_over_pdf cos, where not occluded, is the direct irradiance.
+template <typename L>
+concept Illuminator = requires(const L& light, vec3<scalar_of<L>> point, random_sampler<scalar_of<L>>& random) {
+    static_cast<bool>(light.illuminate(point, random));
+    { light.illuminate(point, random)->towards } -> std::convertible_to<vec3<scalar_of<L>>>;
+    { light.illuminate(point, random)->distance } -> std::convertible_to<scalar_of<L>>;
+    { light.illuminate(point, random)->radiance_over_pdf } -> Spectrum;
+    { light.illuminate(point, random)->pdf } -> std::convertible_to<scalar_of<L>>;
+};
+
+/// Radiance from beyond the scene, from `direction`; black where the lights have no `escaped`.
+template <Spectrum S, typename L, std::floating_point T>
+[[nodiscard]] S escaped_radiance(const L& lights, const vec3<T>& direction) {
+    if constexpr (requires { lights.escaped(direction); }) {
+        return lights.escaped(direction);
+    } else {
+        return {};
+    }
+}
+
+}  // namespace aglow

@@ -1,0 +1,57 @@
+// Unit directions in a few bytes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <aglow/core/vec.hpp>
+
+namespace aglow {
+
+/// A unit direction in four bytes, off by at most 4e-5 rad: the octahedral map with 16 bits an axis
+/// (Cigolla et al. 2014, A Survey of Efficient Representations for Independent Unit Vectors).
+class octahedral {
+public:
+    octahedral() = default;
+
+    template <typename T>
+    explicit octahedral(const vec3<T>& v) {
+        const T sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+        T x = v.x / sum;
+        T y = v.y / sum;
+        if (v.z < 0) {
+            const T folded = (1 - std::abs(y)) * sign(x);
+            y = (1 - std::abs(x)) * sign(y);
+            x = folded;
+        }
+        x_ = quantise(x);
+        y_ = quantise(y);
+    }
+
+    template <typename T>
+    [[nodiscard]] vec3<T> direction() const {
+        const T x = static_cast<T>(x_) / T(32767);
+        const T y = static_cast<T>(y_) / T(32767);
+        const T z = 1 - std::abs(x) - std::abs(y);
+        const T fold = std::max(T(0), -z);
+        return glm::normalize(vec3<T>{x - sign(x) * fold, y - sign(y) * fold, z});
+    }
+
+    friend bool operator==(const octahedral&, const octahedral&) = default;
+
+private:
+    template <typename T>
+    static T sign(T x) {
+        return x < 0 ? T(-1) : T(1);
+    }
+    template <typename T>
+    static std::int16_t quantise(T x) {
+        return static_cast<std::int16_t>(std::lround(std::clamp(x, T(-1), T(1)) * T(32767)));
+    }
+
+    std::int16_t x_{0};
+    std::int16_t y_{0};
+};
+
+}  // namespace aglow

@@ -1,0 +1,16 @@
+// Russian roulette: paths end at random instead of at a fixed depth, and the survivors carry for the rest.
+#pragma once
+
+#include <algorithm>
+
+namespace aglow {
+
+/// The probability to go on when the largest component of the throughput goes from `before` to `after`
+/// (Arvo & Kirk 1990): survivors keep about their weight, no component ever grows. 0 for a black path.
+template <typename T>
+[[nodiscard]] constexpr T survival(T before, T after, T ceiling = T(1)) {
+    if (!(after > 0) || !(before > 0)) { return T(0); }
+    return std::min(ceiling, after / before);
+}
+
+}  // namespace aglow
