@@ -1,3 +1,5 @@
+#include <string>
+
 #include <aglow/core/version.hpp>
 
 #include "support/catch.hpp"
