@@ -47,7 +47,7 @@ TEST_CASE("headers: aglow.hpp includes every one") {
     for (const std::string& header : headers()) {
         if (header == "include/aglow/aglow.hpp") { continue; }
         INFO(header);
-        CHECK(contains(included, "<" + header.substr(std::string{"include/"}.size()) + ">"));
+        CHECK(contains(included, std::string{"<"} + header.substr(std::string{"include/"}.size()) + ">"));
     }
 }
 
