@@ -8,6 +8,7 @@
 #include <aglow/concepts/intersector.hpp>
 #include <aglow/concepts/sampler.hpp>
 #include <aglow/concepts/spectrum.hpp>
+#include <aglow/core/random.hpp>
 #include <aglow/core/ray.hpp>
 
 namespace aglow {
@@ -34,12 +35,12 @@ struct illumination {
 /// Must be true: the mean of `power` is the light's power in watts.
 template <typename L>
 concept Emitter = requires(const L& light, random_sampler<scalar_of<L>>& random) {
-    { light.emit(random).power } -> Spectrum;
+    requires Spectrum<std::remove_cvref_t<decltype(light.emit(random).power)>>;
     { light.emit(random).path } -> std::convertible_to<ray<scalar_of<L>>>;
 };
 
-/// A light that can be looked at: what direct light asks. `illuminate(point, random)` is an optional-like `illumination`,
-/// empty where the light cannot shine on the point.
+/// A light that can be looked at: what direct light asks. `illuminate(point, random)` is an optional-like
+/// `illumination`, empty where the light cannot shine on the point.
 /// - optional `pdf(point, towards, hit)`: the density per steradian with which `illuminate(point)` looks at `hit`, met
 ///   from `point` along `towards`; 0 for what is no light. With it, emission that scattered rays meet is weighed in
 ///   (multiple importance sampling); without it, only what `illuminate` cannot find (seen by the eye or in a mirror)
@@ -53,7 +54,7 @@ concept Illuminator = requires(const L& light, vec3<scalar_of<L>> point, random_
     static_cast<bool>(light.illuminate(point, random));
     { light.illuminate(point, random)->towards } -> std::convertible_to<vec3<scalar_of<L>>>;
     { light.illuminate(point, random)->distance } -> std::convertible_to<scalar_of<L>>;
-    { light.illuminate(point, random)->radiance_over_pdf } -> Spectrum;
+    requires Spectrum<std::remove_cvref_t<decltype(light.illuminate(point, random)->radiance_over_pdf)>>;
     { light.illuminate(point, random)->pdf } -> std::convertible_to<scalar_of<L>>;
 };
 

@@ -17,8 +17,8 @@ concept Sampler = requires(R& random) {
     { random.next_2d().y } -> std::convertible_to<decltype(random.next_1d())>;
 };
 
-/// All numbers of one path: `at(bounce, why)` gives the `Sampler` of one decision, the same one at every call, so a path
-/// draws the same numbers whichever thread walks it; `fork(branch)` gives those of a path that branches off.
+/// All numbers of one path: `at(bounce, why)` gives the `Sampler` of one decision, the same one at every call, so a
+/// path draws the same numbers whichever thread walks it; `fork(branch)` gives those of a path that branches off.
 template <typename N>
 concept Numbers = std::copy_constructible<N> && requires(const N& numbers) {
     { numbers.at(std::uint32_t{}, purpose::scatter) } -> Sampler;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <concepts>
-#include <cstddef>
+#include <type_traits>
 
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/vec.hpp>
@@ -56,13 +56,18 @@ template <Spectrum S>
 }
 
 /// The spectrum whose every band is one, made of black: what multiplies without change.
-/// A host whose spectrum cannot be made from a scalar overloads `white(std::type_identity<S>)`.
+/// `white(std::type_identity<S>)`, found by argument-dependent lookup, where the host has it; else `S(k)`, which must
+/// then fill all bands. An aggregate is never made so: its `S(k)` would be one band of light and the rest black.
 template <Spectrum S>
 [[nodiscard]] constexpr S white() {
-    if constexpr (std::constructible_from<S, band_of<S>>) {
-        return S(band_of<S>(1));
-    } else {
+    if constexpr (requires {
+                      { white(std::type_identity<S>{}) } -> std::convertible_to<S>;
+                  }) {
         return white(std::type_identity<S>{});
+    } else {
+        static_assert(std::constructible_from<S, band_of<S>> && !std::is_aggregate_v<S>,
+                      "this spectrum needs an overload of white(std::type_identity<S>) beside it");
+        return S(band_of<S>(1));
     }
 }
 

@@ -1,15 +1,14 @@
 // What is known where a ray meets the scene: a place, and how light scatters there.
 #pragma once
 
-#include <bit>
 #include <concepts>
 #include <cstdint>
-#include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <aglow/concepts/sampler.hpp>
 #include <aglow/concepts/spectrum.hpp>
-#include <aglow/core/ray.hpp>
+#include <aglow/core/random.hpp>
 #include <aglow/core/vec.hpp>
 
 namespace aglow {
@@ -44,9 +43,7 @@ enum class lobe_set : std::uint8_t {
     return static_cast<lobe_set>(~static_cast<unsigned>(a) & static_cast<unsigned>(lobe_set::all));
 }
 /// Whether `a` has any lobe of `b`.
-[[nodiscard]] constexpr bool any(lobe_set a, lobe_set b = lobe_set::all) {
-    return (a & b) != lobe_set::none;
-}
+[[nodiscard]] constexpr bool any(lobe_set a, lobe_set b = lobe_set::all) { return (a & b) != lobe_set::none; }
 
 /// Where a ray met the scene. `position` = origin + t direction; `normal` is the unit geometric normal, the same from
 /// both sides. May carry anything more: a shading normal, ids, and
@@ -63,8 +60,9 @@ concept Hit = std::copyable<H> && requires(const H& hit) {
 template <Hit H>
 using hit_scalar = std::remove_cvref_t<decltype(std::declval<const H&>().position.x)>;
 
-/// One scattered direction: `weight` = f |cos| / pdf, of the `lobe` that was drawn; `pdf` per steradian and counted over
-/// all lobes asked for, unused (any value) for a specular lobe.
+/// One scattered direction. From a smooth `lobe`: `weight` = f |cos| / `pdf`, with f and `pdf` (per steradian) both
+/// counted over all smooth lobes asked for, whichever of them was drawn. From a specular `lobe`: `weight` = its
+/// reflectance over the probability that it was drawn, and `pdf` is unused (any value).
 template <Spectrum S, std::floating_point T>
 struct scatter_sample {
     vec3<T> wi{};
@@ -75,7 +73,8 @@ struct scatter_sample {
 
 /// A hit that knows how it scatters light. `wo`, `wi`: unit, both pointing away from the surface. The BSDF is meant
 /// against the geometric normal: scattered radiance = ∫ evaluate(wo, wi) L(wi) |wi·normal| dwi, so a host with shading
-/// normals multiplies its f by |wi·Ns| / |wi·Ng|, and light travelling the other way is `evaluate` with its arguments swapped.
+/// normals multiplies its f by |wi·Ns| / |wi·Ng|, and light travelling the other way is `evaluate` with its arguments
+/// swapped.
 ///
 /// - `lobes()`: the lobes that this point has.
 /// - `evaluate(wo, wi, lobes)`: f in 1/sr, of those lobes; specular ones count nothing.
@@ -90,11 +89,11 @@ struct scatter_sample {
 template <typename H>
 concept Surface = Hit<H> && requires(const H& hit, vec3<hit_scalar<H>> w, random_sampler<hit_scalar<H>>& random) {
     { hit.lobes() } -> std::same_as<lobe_set>;
-    { hit.evaluate(w, w, lobe_set::all) } -> Spectrum;
+    requires Spectrum<std::remove_cvref_t<decltype(hit.evaluate(w, w, lobe_set::all))>>;
     { hit.pdf(w, w, lobe_set::all) } -> std::convertible_to<hit_scalar<H>>;
     static_cast<bool>(hit.sample(w, random, lobe_set::all));
     { hit.sample(w, random, lobe_set::all)->wi } -> std::convertible_to<vec3<hit_scalar<H>>>;
-    { hit.sample(w, random, lobe_set::all)->weight } -> Spectrum;
+    requires Spectrum<std::remove_cvref_t<decltype(hit.sample(w, random, lobe_set::all)->weight)>>;
     { hit.sample(w, random, lobe_set::all)->pdf } -> std::convertible_to<hit_scalar<H>>;
     { hit.sample(w, random, lobe_set::all)->lobe } -> std::convertible_to<lobe_set>;
 };

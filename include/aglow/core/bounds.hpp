@@ -18,7 +18,11 @@ struct bounds {
     [[nodiscard]] constexpr vec3<T> extent() const { return empty() ? vec3<T>{} : high - low; }
 
     /// Length of the diagonal; 0 for an empty box or a single point.
-    [[nodiscard]] T diagonal() const { return glm::length(extent()); }
+    [[nodiscard]] T diagonal() const {
+        const T longest = max_abs(extent());
+        // In units of the longest side: squares of very small or very large lengths leave the range of floats.
+        return longest > 0 ? longest * glm::length(extent() / longest) : T(0);
+    }
 
     /// Radius of the sphere around `centre()` that holds the box.
     [[nodiscard]] T radius() const { return diagonal() / 2; }

@@ -16,8 +16,8 @@ struct frame {
 
     frame() = default;
 
-    /// Expects unit `normal`. Continuous but for the pole (0, 0, -1) (Duff et al. 2017, Building an Orthonormal Basis,
-    /// Revisited, listing 3).
+    /// Expects unit `normal`. Continuous on each side of the equator z = 0, where x and y jump (Duff et al. 2017,
+    /// Building an Orthonormal Basis, Revisited, listing 3).
     explicit frame(const vec3<T>& normal) : z{normal} {
         const T sign = std::copysign(T(1), normal.z);
         const T a = T(-1) / (sign + normal.z);

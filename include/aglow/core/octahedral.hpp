@@ -10,7 +10,7 @@
 namespace aglow {
 
 /// A unit direction in four bytes, off by at most 4e-5 rad: the octahedral map with 16 bits an axis
-/// (Cigolla et al. 2014, A Survey of Efficient Representations for Independent Unit Vectors).
+/// (Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit Vectors).
 class octahedral {
 public:
     octahedral() = default;

@@ -82,11 +82,11 @@ private:
 };
 
 /// Splits [0, count) into blocks of `block` items and runs `body(block_index, first, last)` for each. The blocks do not
-/// depend on the number of threads, so what is joined in block order is the same for any number.
+/// depend on the number of threads, so what is joined in block order is the same for any number. Expects `block` > 0.
 template <Executor E, typename Body>
 void for_each_block(const E& run, std::size_t count, std::size_t block, Body&& body) {
-    const std::size_t blocks = (count + block - 1) / block;
-    run(blocks, [&](std::size_t i) { body(i, i * block, std::min(count, (i + 1) * block)); });
+    const std::size_t blocks = count / block + (count % block != 0 ? 1 : 0);
+    run(blocks, [&](std::size_t i) { body(i, i * block, i * block + std::min(block, count - i * block)); });
 }
 
 }  // namespace aglow

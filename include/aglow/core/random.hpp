@@ -1,7 +1,7 @@
 // Random numbers that are a function of what they are for: (seed, pass, path, bounce, purpose) and nothing else.
 #pragma once
 
-#include <algorithm>
+#include <concepts>
 #include <cstdint>
 
 #include <aglow/core/numbers.hpp>

@@ -6,7 +6,8 @@
 namespace aglow {
 
 /// The probability to go on when the largest component of the throughput goes from `before` to `after`
-/// (Arvo & Kirk 1990): survivors keep about their weight, no component ever grows. 0 for a black path.
+/// (Arvo & Kirk 1990): divided by it, the largest component of a survivor is no larger than before, unless `ceiling` is
+/// below one. 0 for a black path.
 template <typename T>
 [[nodiscard]] constexpr T survival(T before, T after, T ceiling = T(1)) {
     if (!(after > 0) || !(before > 0)) { return T(0); }

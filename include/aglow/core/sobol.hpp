@@ -1,6 +1,7 @@
 // Owen-scrambled Sobol points for paths that know their place among a pixel's samples.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 #include <aglow/core/random.hpp>
@@ -42,7 +43,8 @@ namespace aglow {
     return x;
 }
 
-/// Point `index` of a randomised (0,2)-sequence: any 2^m points in a row are stratified in all elementary boxes.
+/// Point `index` of a randomised (0,2)-sequence: each aligned block of 2^m points, the first 2^m among
+/// them, has one in every elementary box of area 2^-m.
 template <std::floating_point T>
 [[nodiscard]] constexpr vec2<T> sobol_2d(std::uint32_t index, std::uint64_t seed) {
     const auto low = static_cast<std::uint32_t>(seed);
