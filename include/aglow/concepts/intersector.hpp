@@ -45,6 +45,7 @@ concept Intersector = requires(const S& scene, const ray<scalar_of<S>>& r, point
     { scene.occluded(a, b) } -> std::convertible_to<bool>;
     static_cast<bool>(scene.intersect(r));
     requires Hit<std::remove_cvref_t<decltype(*scene.intersect(r))>>;
+    scene.intersect(r)->position;
     requires std::same_as<hit_scalar<std::remove_cvref_t<decltype(*scene.intersect(r))>>, scalar_of<S>>;
 };
 
