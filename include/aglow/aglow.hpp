@@ -7,6 +7,7 @@
 #include <aglow/core/halton.hpp>
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/octahedral.hpp>
+#include <aglow/core/packed_direction.hpp>
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/random.hpp>
 #include <aglow/core/ray.hpp>
@@ -18,6 +19,7 @@
 
 // concepts: what a host brings
 #include <aglow/concepts/intersector.hpp>
+#include <aglow/concepts/lambert.hpp>
 #include <aglow/concepts/light.hpp>
 #include <aglow/concepts/sampler.hpp>
 #include <aglow/concepts/spectrum.hpp>
@@ -26,7 +28,25 @@
 // containers: where things are
 
 // estimators: light from what was stored
+#include <aglow/estimators/density.hpp>
+#include <aglow/estimators/estimate.hpp>
+#include <aglow/estimators/irradiance_points.hpp>
+#include <aglow/estimators/kernel.hpp>
+#include <aglow/estimators/photon.hpp>
+#include <aglow/estimators/photon_map.hpp>
 
 // algorithms: light on its way
+#include <aglow/algorithms/direct_light.hpp>
+#include <aglow/algorithms/energy_ledger.hpp>
+#include <aglow/algorithms/final_gather.hpp>
+#include <aglow/algorithms/layered_integrator.hpp>
+#include <aglow/algorithms/layers.hpp>
+#include <aglow/algorithms/path_trace.hpp>
+#include <aglow/algorithms/path_walk.hpp>
+#include <aglow/algorithms/photon_options.hpp>
+#include <aglow/algorithms/photon_source.hpp>
+#include <aglow/algorithms/photon_walk.hpp>
+#include <aglow/algorithms/precompute_irradiance.hpp>
+#include <aglow/algorithms/trace_photons.hpp>
 
 // report: how good is it

@@ -1,0 +1,46 @@
+// The books of a particle simulation: where every emitted particle ended, to the last one.
+#pragma once
+
+#include <cstdint>
+
+#include <aglow/concepts/spectrum.hpp>
+
+namespace aglow {
+
+/// What became of the emitted particles. Counts are exact: emitted = escaped + absorbed + roulette + unneeded + capped
+/// + dropped.
+/// Powers are in the unit of the lights' power summed over paths; divide by `emitted` for watts.
+template <Spectrum S>
+struct energy_ledger {
+    std::uint64_t emitted{0};   ///< particles that lights sent out
+    std::uint64_t escaped{0};   ///< left the scene
+    std::uint64_t absorbed{0};  ///< met a surface that scattered nothing on
+    std::uint64_t roulette{0};  ///< ended by Russian roulette, their power carried by the survivors
+    std::uint64_t unneeded{0};  ///< cut short where nobody wanted the rest of the path
+    std::uint64_t capped{0};    ///< cut off at the caller's depth cap: this power is lost, the result darker
+    std::uint64_t dropped{0};   ///< had power that was NaN, infinite or negative, or met a broken hit
+    std::uint64_t bounces{0};   ///< surfaces met in all
+    S power_emitted{};
+    S power_escaped{};
+    S power_absorbed{};  ///< expected absorption: what scattering took, surface by surface
+    S power_capped{};
+
+    /// Joins the books of two disjoint sets of paths.
+    energy_ledger& operator+=(const energy_ledger& other) {
+        emitted += other.emitted;
+        escaped += other.escaped;
+        absorbed += other.absorbed;
+        roulette += other.roulette;
+        unneeded += other.unneeded;
+        capped += other.capped;
+        dropped += other.dropped;
+        bounces += other.bounces;
+        power_emitted = power_emitted + other.power_emitted;
+        power_escaped = power_escaped + other.power_escaped;
+        power_absorbed = power_absorbed + other.power_absorbed;
+        power_capped = power_capped + other.power_capped;
+        return *this;
+    }
+};
+
+}  // namespace aglow

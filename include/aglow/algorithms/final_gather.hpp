@@ -1,0 +1,70 @@
+// Final gathering: the last diffuse bounce by rays, everything before it from the map.
+//
+// Jensen 1996; Reichert 1992. Smooth and sharp where the map itself is blotchy; costs its rays at every point.
+#pragma once
+
+#include <cstdint>
+
+#include <aglow/algorithms/layers.hpp>
+#include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/sobol.hpp>
+
+namespace aglow {
+
+/// How a final gather samples.
+struct final_gather_options {
+    std::uint32_t rays{64};                           ///< gather rays per shading point
+    emission_rule caustics{emission_rule::indirect};  ///< `no_caustics` beside a caustic map
+};
+
+/// Layer: indirect light on diffuse lobes from gather rays into `Source` (anything with `incoming(ray, numbers,
+/// rule)`).
+template <typename Source>
+class gather_layer {
+public:
+    explicit gather_layer(const Source& source, const final_gather_options& options = {})
+        : source_{source}, options_{options} {}
+
+    template <Surface H, Numbers N>
+    [[nodiscard]] estimate<surface_spectrum<H>> operator()(const H& hit, const vec3<hit_scalar<H>>& wo,
+                                                           hit_scalar<H> error, const N& numbers,
+                                                           std::uint32_t bounce) const {
+        using S = surface_spectrum<H>;
+        using T = hit_scalar<H>;
+        using B = band_of<S>;
+        if (!any(hit.lobes(), lobe_set::diffuse) || options_.rays == 0) { return {}; }
+        const std::uint64_t seed = seed_from(numbers.at(bounce, purpose::gather));
+        S sum{};
+        B sum2{0};
+        B guess{0};
+        for (std::uint32_t i = 0; i < options_.rays; ++i) {
+            sobol_sampler<T> random{seed, i};
+            const auto next = hit.sample(wo, random, lobe_set::diffuse);
+            if (!next) { continue; }
+            const ray<T> path{lift(vec3<T>(hit.position), vec3<T>(hit.normal), vec3<T>(next->wi), error), next->wi};
+            const auto light = source_.incoming(path, numbers.fork(mix(bounce, i)), options_.caustics);
+            const S radiance = next->weight * light.radiance;
+            if (!is_radiance(radiance)) { continue; }
+            sum = sum + radiance;
+            sum2 += square(max_component(radiance));
+            guess += max_component(next->weight) * light.error;
+        }
+        const B share = 1 / static_cast<B>(options_.rays);
+        const B mean = max_component(sum) * share;
+        const B variance = std::max(B(0), sum2 * share - mean * mean) * share;
+        // Many rays average the map's errors out; what they have in common stays.
+        return {sum * share, std::sqrt(variance) + guess * share};
+    }
+
+private:
+    template <Sampler R>
+    [[nodiscard]] static std::uint64_t seed_from(R random) {
+        const auto u = random.next_2d();
+        return mix(static_cast<std::uint64_t>(u.x * 0x1p24), static_cast<std::uint64_t>(u.y * 0x1p24));
+    }
+
+    const Source& source_;
+    final_gather_options options_;
+};
+
+}  // namespace aglow

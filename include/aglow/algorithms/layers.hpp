@@ -1,0 +1,101 @@
+// The light of a picture in layers: what is looked up or sampled at a surface, each layer one kind of light.
+//
+// A layer is a callable `layer(hit, wo, error, numbers, bounce)` that returns an `estimate` of the radiance that `hit`
+// sends towards `wo`. Layers never overlap: direct (L D), caustic (L S+ D) and indirect (everything else that ends D).
+#pragma once
+
+#include <tuple>
+
+#include <aglow/algorithms/direct_light.hpp>
+#include <aglow/estimators/estimate.hpp>
+#include <aglow/estimators/photon_map.hpp>
+
+namespace aglow {
+
+/// The unit normal of `hit` on the side that `w` points to.
+template <Hit H>
+[[nodiscard]] vec3<hit_scalar<H>> side_of(const H& hit, const vec3<hit_scalar<H>>& w) {
+    const vec3<hit_scalar<H>> n = hit.normal;
+    return glm::dot(n, w) < 0 ? -n : n;
+}
+
+/// Radiance towards `wo` that the diffuse lobes of `hit` make of irradiance: `irradiance(side)` is asked for the side
+/// of `wo` and, only where something transmits, for the far side. A diffuse lobe is one whose f does not depend on
+/// `wi`.
+template <lobe_set Possible = lobe_set::all, Surface H, typename Irradiance>
+[[nodiscard]] estimate<surface_spectrum<H>> diffuse_radiance(const H& hit, const vec3<hit_scalar<H>>& wo,
+                                                             Irradiance&& irradiance) {
+    using S = surface_spectrum<H>;
+    estimate<S> result;
+    const auto add = [&](const vec3<hit_scalar<H>>& side, lobe_set lobe) {
+        const estimate<S> e = irradiance(side);
+        const S f = hit.evaluate(wo, side, lobe);
+        result = result + estimate<S>{f * e.value, max_component(f) * e.error};
+    };
+    const vec3<hit_scalar<H>> near = side_of(hit, wo);
+    if (any(hit.lobes(), lobe_set::diffuse_reflection)) { add(near, lobe_set::diffuse_reflection); }
+    if constexpr (any(Possible, lobe_set::diffuse_transmission)) {
+        if (any(hit.lobes(), lobe_set::diffuse_transmission)) { add(-near, lobe_set::diffuse_transmission); }
+    }
+    return result;
+}
+
+/// Layer: a photon map looked at directly, on diffuse lobes.
+template <Spectrum S, std::floating_point T>
+class map_layer {
+public:
+    explicit map_layer(const photon_map<S, T>& map, const density_options& options = {})
+        : map_{map}, options_{options} {}
+
+    template <Surface H, typename N>
+    [[nodiscard]] estimate<S> operator()(const H& hit, const vec3<T>& wo, T, const N&, std::uint32_t) const {
+        if (map_.empty()) { return {}; }
+        return diffuse_radiance(hit, wo, [&](const vec3<T>& side) -> estimate<S> {
+            return map_.irradiance(vec3<T>(hit.position), side, options_);
+        });
+    }
+
+private:
+    const photon_map<S, T>& map_;
+    density_options options_;
+};
+
+/// Layer: light straight from the lights by one shadow ray.
+template <Scene World, Illuminator Lights>
+class direct_layer {
+public:
+    direct_layer(const World& scene, const Lights& lights) : scene_{scene}, lights_{lights} {}
+
+    template <typename N>
+    [[nodiscard]] estimate<spectrum_of<World>> operator()(const hit_of<World>& hit, const vec3<scalar_of<World>>& wo,
+                                                          scalar_of<World> error, const N& numbers,
+                                                          std::uint32_t bounce) const {
+        return {direct_light(scene_, lights_, hit, wo, error, numbers.at(bounce, purpose::light),
+                             {.lit = lobe_set::smooth, .scattered = lobe_set::glossy}),
+                0};
+    }
+
+private:
+    const World& scene_;
+    const Lights& lights_;
+};
+
+/// Several layers, added up.
+template <typename... Layers>
+class layer_sum {
+public:
+    explicit layer_sum(Layers... layers) : layers_{std::move(layers)...} {}
+
+    template <Surface H, typename N>
+    [[nodiscard]] estimate<surface_spectrum<H>> operator()(const H& hit, const vec3<hit_scalar<H>>& wo,
+                                                           hit_scalar<H> error, const N& numbers,
+                                                           std::uint32_t bounce) const {
+        return std::apply([&](const auto&... layer) { return (layer(hit, wo, error, numbers, bounce) + ...); },
+                          layers_);
+    }
+
+private:
+    std::tuple<Layers...> layers_;
+};
+
+}  // namespace aglow

@@ -1,0 +1,175 @@
+// One path from the eye or from a gather point, carried on until it ends by itself or reads the rest from elsewhere.
+//
+// Kajiya 1986; next-event estimation and scattering share the light by multiple importance sampling (Veach & Guibas
+// 1995). The one loop under the path tracer and under the rays of every gather.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include <aglow/algorithms/direct_light.hpp>
+#include <aglow/algorithms/photon_walk.hpp>
+#include <aglow/core/roulette.hpp>
+#include <aglow/estimators/estimate.hpp>
+
+namespace aglow {
+
+/// How long paths get, and how they end.
+struct path_options {
+    std::uint32_t most_bounces{0};   ///< depth cap, 0 for none; a cap makes the picture darker
+    std::uint32_t roulette_from{2};  ///< bounces before Russian roulette may end a path
+};
+
+/// Which emission a walk takes for itself where its first ray, or a chain of mirrors after it, meets a light.
+enum class emission_rule : std::uint8_t {
+    all,         ///< a ray from the eye: everything it meets
+    indirect,    ///< a gather ray: the asker looked for lights himself, but not through mirrors
+    no_caustics  ///< a gather ray beside a caustic map: not through mirrors either
+};
+
+/// What comes along a ray, and from how far; infinite where the ray left the scene.
+template <Spectrum S, std::floating_point T>
+struct incoming_light {
+    S radiance{};
+    T distance{std::numeric_limits<T>::infinity()};
+    band_of<S> error{};
+};
+
+/// The end of no path: every path goes on by itself.
+struct no_terminal {};
+
+namespace detail {
+
+/// Where a walk stands.
+template <Scene World>
+struct walk_state {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+
+    ray<T> path{};
+    S throughput{white<S>()};
+    vec3<T> came_from{};  ///< the last point that looked for lights
+    T scatter_pdf{0};     ///< density of `path` there; 0 where specular or the eye
+    lobe_set last{lobe_set::none};
+    bool mirrored{true};  ///< only specular bounces so far
+};
+
+/// The share of emission met by a scattered ray that is not the light sampling's (1 for the eye and for mirrors).
+template <Scene World, typename Lights>
+[[nodiscard]] scalar_of<World> emission_share(const walk_state<World>& at, const Lights& lights,
+                                              const hit_of<World>& hit, emission_rule rule, std::uint32_t bounce) {
+    using T = scalar_of<World>;
+    if (at.mirrored && rule != emission_rule::all) {
+        return bounce == 1 || rule == emission_rule::no_caustics ? T(0) : T(1);
+    }
+    if (!any(at.last, lobe_set::smooth)) { return T(1); }
+    if constexpr (TellsPdf<Lights, hit_of<World>>) {
+        return balance(at.scatter_pdf, T(lights.pdf(at.came_from, at.path.direction, hit)));
+    } else {
+        return T(0);
+    }
+}
+
+/// The same for what comes from beyond the scene.
+template <Scene World, typename Lights>
+[[nodiscard]] scalar_of<World> escape_share(const walk_state<World>& at, const Lights& lights, emission_rule rule,
+                                            std::uint32_t bounce) {
+    using T = scalar_of<World>;
+    if constexpr (requires { lights.escaped_pdf(at.came_from, at.path.direction); }) {
+        if (at.mirrored && rule != emission_rule::all) {
+            return bounce == 1 || rule == emission_rule::no_caustics ? T(0) : T(1);
+        }
+        if (!any(at.last, lobe_set::smooth)) { return T(1); }
+        return balance(at.scatter_pdf, T(lights.escaped_pdf(at.came_from, at.path.direction)));
+    } else {
+        // Nobody looks at the sky, so every ray that meets it counts.
+        return T(1);
+    }
+}
+
+/// Sends the walk on from `hit` by one of `lobes`; false where it ends.
+template <Scene World, Numbers N>
+[[nodiscard]] bool scatter(walk_state<World>& at, const hit_of<World>& hit, const vec3<scalar_of<World>>& wo,
+                           scalar_of<World> error, const N& numbers, std::uint32_t bounce, lobe_set lobes,
+                           const path_options& options) {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+    using B = band_of<S>;
+    if (!any(lobes)) { return false; }
+    auto scatter_numbers = numbers.at(bounce, purpose::scatter);
+    const auto next = hit.sample(wo, scatter_numbers, lobes);
+    if (!next) { return false; }
+    at.throughput = at.throughput * next->weight;
+    if (!is_radiance(at.throughput) || is_black(at.throughput)) { return false; }
+    if (bounce >= options.roulette_from) {
+        const B q = survival(B(1), max_component(at.throughput));
+        if (!(numbers.at(bounce, purpose::roulette).next_1d() < q)) { return false; }
+        at.throughput = at.throughput * (1 / q);
+    }
+    at.last = next->lobe;
+    at.mirrored = at.mirrored && !any(next->lobe, lobe_set::smooth);
+    at.scatter_pdf = any(next->lobe, lobe_set::smooth) ? T(next->pdf) : T(0);
+    at.came_from = vec3<T>(hit.position);
+    at.path = {lift(at.came_from, vec3<T>(hit.normal), vec3<T>(next->wi), error), next->wi};
+    return true;
+}
+
+}  // namespace detail
+
+/// Walks along `start` and returns the radiance that comes back along it, and the distance of the first hit.
+///
+/// `terminal(hit, wo, travelled, error)` may end the walk with an optional `estimate` of the radiance that the diffuse
+/// lobes of `hit` send towards `wo`, direct light included; `travelled` is the length of the last leg. Samples with
+/// broken hits or numbers end where they are, never summed.
+template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
+[[nodiscard]] incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
+    const World& scene, const Lights& lights, const ray<scalar_of<World>>& start, const N& numbers,
+    emission_rule rule = emission_rule::all, const path_options& options = {}, const Terminal& terminal = {}) {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+    using B = band_of<S>;
+    incoming_light<S, T> result;
+    detail::walk_state<World> at{.path = start};
+    const auto add = [&](const S& radiance) {
+        const S arriving = at.throughput * radiance;
+        if (is_radiance(arriving)) { result.radiance = result.radiance + arriving; }
+    };
+
+    for (std::uint32_t bounce = 1;; ++bounce) {
+        const auto hit = scene.intersect(at.path);
+        if (!hit) {
+            const T share = detail::escape_share(at, lights, rule, bounce);
+            if (share > 0) { add(escaped_radiance<S>(lights, at.path.direction) * B(share)); }
+            return result;
+        }
+        if (!is_sound(*hit, at.path)) { return result; }
+        const vec3<T> wo = -at.path.direction;
+        const vec3<T> position = hit->position;
+        const T error = error_of(*hit, at.path.origin);
+        const T travelled = glm::dot(position - at.path.origin, at.path.direction);
+        if (bounce == 1) { result.distance = travelled; }
+
+        const S glow = emitted(*hit, wo);
+        if (!is_black(glow)) { add(glow * B(detail::emission_share(at, lights, *hit, rule, bounce))); }
+        if (options.most_bounces != 0 && bounce > options.most_bounces) { return result; }
+
+        lobe_set lobes = hit->lobes();
+        if constexpr (!std::same_as<Terminal, no_terminal>) {
+            if (any(lobes, lobe_set::diffuse)) {
+                if (const auto rest = terminal(*hit, wo, travelled, error)) {
+                    add(rest->value);
+                    result.error += max_component(at.throughput) * rest->error;
+                    lobes = lobes & ~lobe_set::diffuse;
+                }
+            }
+        }
+        if (any(lobes, lobe_set::smooth)) {
+            add(direct_light(scene, lights, *hit, wo, error, numbers.at(bounce, purpose::light),
+                             {.lit = lobes, .scattered = lobes}));
+        }
+        if (!detail::scatter(at, *hit, wo, error, numbers, bounce, lobes, options)) { return result; }
+    }
+}
+
+}  // namespace aglow

@@ -1,0 +1,56 @@
+// What to ask of photon tracing, and what comes back: three maps that know how they came about.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <aglow/algorithms/energy_ledger.hpp>
+#include <aglow/estimators/photon_map.hpp>
+
+namespace aglow {
+
+/// How many photons, and how.
+struct photon_options {
+    std::size_t direct{0};                   ///< photons wanted straight from the lights; 0 leaves the map out
+    std::size_t caustic{0};                  ///< wanted over specular surfaces only; 0 leaves the map out
+    std::size_t indirect{0};                 ///< wanted after a diffuse or glossy bounce; 0 leaves the map out
+    std::size_t most_paths{16'000'000};      ///< paths emitted at the most, whatever is still wanted
+    std::size_t pilot_paths{8192};           ///< paths of the pilot that finds out how many are needed
+    std::uint32_t most_bounces{0};           ///< depth cap, 0 for none: roulette ends paths without bias
+    std::uint64_t seed{0};                   ///< another seed, another picture
+    std::uint64_t pass{0};                   ///< of a progressive rendering
+    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
+};
+
+/// How a photon map came out.
+enum class map_status {
+    left_out,  ///< not wanted, or the scene cannot have such light
+    full,      ///< about as many photons as wanted
+    partly,    ///< fewer than wanted: the light is rare and the paths were used up
+    empty      ///< none landed
+};
+
+/// A photon map, and how it came about.
+template <Spectrum S, std::floating_point T>
+struct traced_map : photon_map<S, T> {
+    map_status status{map_status::left_out};
+    std::size_t wanted{0};
+    std::size_t paths{0};  ///< emitted paths that could have stored here: what its power was divided by
+    std::string why{};     ///< one clause for people, such as "left out, no specular surface"
+};
+
+/// What `trace_photons` gives back.
+template <Spectrum S, std::floating_point T>
+struct photon_maps {
+    traced_map<S, T> direct{};
+    traced_map<S, T> caustic{};
+    traced_map<S, T> indirect{};
+    energy_ledger<S> ledger{};
+
+    [[nodiscard]] std::size_t size() const { return direct.size() + caustic.size() + indirect.size(); }
+};
+
+}  // namespace aglow

@@ -1,0 +1,62 @@
+// Light along gather rays, read from precomputed irradiance where they land.
+//
+// Jensen 1996 with Christensen 1999: the photon map for all bounces but the last. Where a ray lands nearer than the
+// photons' own spacing, the map knows no detail, and the ray goes on instead (a second gather).
+#pragma once
+
+#include <optional>
+
+#include <aglow/algorithms/layers.hpp>
+#include <aglow/algorithms/path_walk.hpp>
+#include <aglow/estimators/irradiance_points.hpp>
+
+namespace aglow {
+
+/// How gather rays read the map.
+struct photon_source_options {
+    double near{1};        ///< a hit nearer than so many photon radii is gathered once more
+    path_options paths{};  ///< for the rays that go on
+};
+
+/// A source of incoming light: mirrors and gloss are followed, diffuse surfaces read from the irradiance points. Keeps
+/// references; `const`, safe from many threads.
+template <Scene World, Illuminator Lights>
+class photon_source {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+
+public:
+    photon_source(const World& scene, const Lights& lights, const irradiance_points<S, T>& points,
+                  const photon_source_options& options = {})
+        : scene_{scene}, lights_{lights}, points_{points}, options_{options} {}
+
+    /// Light that comes along `gather`; emission that the asker finds by himself is left to him.
+    template <Numbers N>
+    [[nodiscard]] incoming_light<S, T> incoming(const ray<T>& gather, const N& numbers,
+                                                emission_rule rule = emission_rule::indirect) const {
+        const auto read = [this](const hit_of<World>& hit, const vec3<T>& wo, T travelled, T) {
+            return this->read(hit, wo, travelled);
+        };
+        return walk_path(scene_, lights_, gather, numbers, rule, options_.paths, read);
+    }
+
+private:
+    [[nodiscard]] std::optional<estimate<S>> read(const hit_of<World>& hit, const vec3<T>& wo, T travelled) const {
+        bool usable = true;
+        const auto irradiance = [&](const vec3<T>& side) -> estimate<S> {
+            const auto found = points_.nearest(vec3<T>(hit.position), side);
+            usable = usable && found && travelled >= static_cast<T>(options_.near) * found->radius;
+            return found ? static_cast<const estimate<S>&>(*found) : estimate<S>{};
+        };
+        const estimate<S> radiance = diffuse_radiance<static_lobes<World>>(hit, wo, irradiance);
+        if (!usable) { return std::nullopt; }
+        return radiance;
+    }
+
+    const World& scene_;
+    const Lights& lights_;
+    const irradiance_points<S, T>& points_;
+    photon_source_options options_;
+};
+
+}  // namespace aglow

@@ -1,0 +1,108 @@
+// Irradiance at a share of the photons, direct light included: what gather rays read.
+//
+// Christensen 1999. Direct light is sampled by shadow rays instead of photons: fewer photons, no blur at its edges.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <aglow/algorithms/direct_light.hpp>
+#include <aglow/algorithms/photon_options.hpp>
+#include <aglow/core/sobol.hpp>
+#include <aglow/estimators/irradiance_points.hpp>
+
+namespace aglow {
+
+/// How irradiance is worked out ahead.
+struct irradiance_options {
+    std::size_t every{4};          ///< a point at every so many photons
+    std::uint32_t shadow_rays{8};  ///< looks at the lights per point; 0 takes direct light from the direct map
+    density_options density{};     ///< for the caustic and the indirect map
+    std::uint64_t seed{0};
+};
+
+namespace detail {
+
+/// A place on a surface that takes in light from all of one side: what direct irradiance is sampled with.
+template <Spectrum S, std::floating_point T>
+struct collector {
+    vec3<T> position{};
+    vec3<T> normal{};
+
+    [[nodiscard]] lobe_set lobes() const { return lobe_set::diffuse_reflection; }
+    [[nodiscard]] S evaluate(const vec3<T>&, const vec3<T>& wi, lobe_set asked) const {
+        return any(asked, lobe_set::diffuse_reflection) && glm::dot(normal, wi) > 0 ? white<S>() : S{};
+    }
+    [[nodiscard]] T pdf(const vec3<T>&, const vec3<T>&, lobe_set) const { return 0; }
+};
+
+}  // namespace detail
+
+/// Direct irradiance on the side of unit `normal` at `point`, by `rays` stratified shadow rays, W/m².
+template <Scene World, Illuminator Lights>
+[[nodiscard]] spectrum_of<World> direct_irradiance(const World& scene, const Lights& lights,
+                                                   const vec3<scalar_of<World>>& point,
+                                                   const vec3<scalar_of<World>>& normal, scalar_of<World> error,
+                                                   std::uint32_t rays, std::uint64_t seed) {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+    S sum{};
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        sobol_sampler<T> random{seed, i};
+        const auto light = lights.illuminate(point, random);
+        if (!light) { continue; }
+        const T cosine = glm::dot(normal, vec3<T>(light->towards));
+        if (!(cosine > 0)) { continue; }
+        const S radiance = light->radiance_over_pdf * band_of<S>(cosine);
+        const detail::collector<S, T> here{point, normal};
+        if (is_radiance(radiance) && sees(scene, here, vec3<T>(light->towards), T(light->distance), error)) {
+            sum = sum + radiance;
+        }
+    }
+    return sum * (1 / static_cast<band_of<S>>(std::max(1u, rays)));
+}
+
+/// Irradiance from all light at every `options.every`-th photon of each map, the photons' side. Points keep the radius
+/// of their indirect estimate. The same for any executor. O(points (k + shadow rays)).
+template <Scene World, Illuminator Lights, Executor Run = in_sequence>
+[[nodiscard]] auto precompute_irradiance(const World& scene, const Lights& lights,
+                                         const photon_maps<spectrum_of<World>, scalar_of<World>>& maps,
+                                         const irradiance_options& options = {}, const Run& run = {}) {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+    std::vector<irradiance_point<S, T>> points;
+    const auto choose = [&](const photon_map<S, T>& map) {
+        for (std::size_t i = 0; i < map.size(); i += std::max<std::size_t>(1, options.every)) {
+            points.push_back({.position = map.position(i),
+                              .normal = glm::normalize(map.photons()[i].normal.template direction<T>())});
+        }
+    };
+    choose(maps.direct);
+    choose(maps.caustic);
+    choose(maps.indirect);
+    const T far = [&] {
+        bounds<T> all = maps.direct.box();
+        all.add(maps.caustic.box());
+        all.add(maps.indirect.box());
+        return all.empty() ? T(0) : std::max(max_abs(all.low), max_abs(all.high));
+    }();
+    for_each_block(run, points.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            irradiance_point<S, T>& p = points[i];
+            const auto indirect = maps.indirect.irradiance(p.position, p.normal, options.density);
+            const auto caustic = maps.caustic.irradiance(p.position, p.normal, options.density);
+            const S direct = options.shadow_rays == 0
+                                 ? maps.direct.irradiance(p.position, p.normal, options.density).value
+                                 : direct_irradiance(scene, lights, p.position, p.normal, 4 * position_error(far),
+                                                     options.shadow_rays, mix(options.seed, i));
+            p.irradiance = direct + caustic.value + indirect.value;
+            p.error = caustic.error + indirect.error;
+            p.radius = indirect.count > 0 ? indirect.radius : T(0);
+        }
+    });
+    return irradiance_points<S, T>{points, run};
+}
+
+}  // namespace aglow

@@ -1,0 +1,197 @@
+// Photon maps from a scene and its lights: direct, caustic and indirect light, each with its own number of photons.
+//
+// Jensen 1996. How many paths a map needs is found by a pilot whose photons are thrown away, so the number is fixed
+// before the first photon is stored and the estimate stays unbiased (storing until full is k/(k-1) too bright).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <aglow/algorithms/photon_options.hpp>
+#include <aglow/algorithms/photon_walk.hpp>
+#include <aglow/core/halton.hpp>
+#include <aglow/core/parallel.hpp>
+
+namespace aglow {
+
+namespace detail {
+
+/// What one block of consecutive paths brought home, by history.
+template <Spectrum S, std::floating_point T>
+struct photon_block {
+    std::array<std::vector<landed_photon<S, T>>, 3> landed{};
+    std::array<std::size_t, 3> counts{};
+    energy_ledger<S> ledger{};
+};
+
+/// Traces the photons of one call of `trace_photons`, step by step.
+template <Scene World, Emitter Lights, Executor Run>
+class photon_tracer {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+    using kinds = std::array<std::size_t, 3>;
+    static constexpr std::size_t block_size = 1024;
+
+public:
+    photon_tracer(const World& scene, const Lights& lights, const photon_options& options, const Run& run)
+        : scene_{scene}, lights_{lights}, options_{options}, run_{run} {
+        if (options.pilot_paths == 0) { throw std::invalid_argument("photon_options.pilot_paths must not be 0"); }
+    }
+
+    [[nodiscard]] photon_maps<S, T> maps() {
+        plan();
+        photon_maps<S, T> result;
+        const auto blocks = trace(paths_, options_.pass);
+        for (const auto& block : blocks) { result.ledger += block.ledger; }
+        finish(result.direct, blocks, photon_history::direct);
+        finish(result.caustic, blocks, photon_history::caustic);
+        finish(result.indirect, blocks, photon_history::indirect);
+        return result;
+    }
+
+private:
+    static constexpr std::size_t index(photon_history h) { return static_cast<std::size_t>(h); }
+
+    /// Finds how many paths each map needs.
+    void plan() {
+        wanted_ = {options_.direct, options_.caustic, options_.indirect};
+        const lobe_set lobes = possible_lobes(scene_);
+        if (!any(lobes, lobe_set::specular)) { leave_out(photon_history::caustic, "left out, no specular surface"); }
+        if (!any(lobes, lobe_set::smooth)) {
+            for (std::size_t kind = 0; kind < 3; ++kind) {
+                leave_out(static_cast<photon_history>(kind), "left out, no diffuse or glossy surface");
+            }
+        }
+        if (wanted_ == kinds{}) { return; }
+        const kinds found = pilot();
+        const std::size_t try_hard = 32 * options_.pilot_paths;
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            if (wanted_[kind] == 0) { continue; }
+            const double per_photon = static_cast<double>(options_.pilot_paths) / static_cast<double>(found[kind]);
+            const double needed = std::ceil(static_cast<double>(wanted_[kind]) * per_photon);
+            const auto most = static_cast<double>(options_.most_paths);
+            const double paths = found[kind] == 0 ? static_cast<double>(try_hard) : needed;
+            paths_[kind] = static_cast<std::size_t>(std::min(paths, most));
+        }
+    }
+
+    void leave_out(photon_history kind, const char* why) {
+        if (wanted_[index(kind)] == 0) { return; }
+        wanted_[index(kind)] = 0;
+        why_[index(kind)] = why;
+    }
+
+    /// How many photons of each kind the pilot's paths would have stored.
+    [[nodiscard]] kinds pilot() {
+        kinds all{};
+        for (std::size_t kind = 0; kind < 3; ++kind) { all[kind] = wanted_[kind] == 0 ? 0 : options_.pilot_paths; }
+        piloting_ = true;
+        const auto blocks = trace(all, ~options_.pass);
+        piloting_ = false;
+        kinds found{};
+        for (const auto& block : blocks) {
+            for (std::size_t kind = 0; kind < 3; ++kind) { found[kind] += block.counts[kind]; }
+        }
+        return found;
+    }
+
+    [[nodiscard]] std::vector<photon_block<S, T>> trace(const kinds& paths, std::uint64_t pass) {
+        const std::size_t count = *std::max_element(paths.begin(), paths.end());
+        std::vector<photon_block<S, T>> blocks((count + block_size - 1) / block_size);
+        std::atomic<std::size_t> done{0};
+        std::atomic<bool> stop{false};
+        const halton_scrambling table{options_.seed, pass};
+        for_each_block(run_, count, block_size, [&](std::size_t b, std::size_t first, std::size_t last) {
+            if (stop) { return; }
+            for (std::size_t i = first; i < last; ++i) { trace_path(halton_numbers<T>{table, i}, i, paths, blocks[b]); }
+            done += last - first;
+            if (options_.progress && !piloting_) {
+                const double share = static_cast<double>(done) / static_cast<double>(count);
+                if (!options_.progress(share)) { stop = true; }
+            }
+        });
+        return blocks;
+    }
+
+    void trace_path(const halton_numbers<T>& numbers, std::size_t i, const kinds& paths, photon_block<S, T>& into) {
+        walk_photon(scene_, lights_, numbers, options_.most_bounces, into.ledger,
+                    [&](const auto& hit, const vec3<T>& wi, const S& power, photon_history history) {
+                        if (i < paths[index(history)]) { store(hit, wi, power, into, index(history)); }
+                        const bool caustic = history != photon_history::indirect &&
+                                             any(hit.lobes(), lobe_set::specular) &&
+                                             i < paths[index(photon_history::caustic)];
+                        return caustic || i < paths[index(photon_history::indirect)];
+                    });
+    }
+
+    template <typename H>
+    void store(const H& hit, const vec3<T>& wi, const S& power, photon_block<S, T>& into, std::size_t kind) {
+        ++into.counts[kind];
+        if (piloting_) { return; }
+        const vec3<T> n = hit.normal;
+        const vec3<T> side = glm::dot(n, wi) < 0 ? -n : n;
+        into.landed[kind].push_back(
+            {hit.position, {power, packed_direction<std::int16_t>{wi}, packed_direction<std::int8_t>{side}}});
+    }
+
+    void finish(traced_map<S, T>& map, const std::vector<photon_block<S, T>>& blocks, photon_history kind) {
+        const std::size_t k = index(kind);
+        std::size_t count = 0;
+        for (const auto& block : blocks) { count += block.landed[k].size(); }
+        std::vector<landed_photon<S, T>> photons;
+        photons.reserve(count);
+        for (const auto& block : blocks) {
+            photons.insert(photons.end(), block.landed[k].begin(), block.landed[k].end());
+        }
+        const T scale = paths_[k] == 0 ? T(0) : T(1) / static_cast<T>(paths_[k]);
+        static_cast<photon_map<S, T>&>(map) = photon_map<S, T>{photons, scale, run_};
+        map.wanted = wanted_[k];
+        map.paths = paths_[k];
+        map.why = why_[k];
+        describe(map);
+    }
+
+    static void describe(traced_map<S, T>& map) {
+        if (map.wanted == 0) { return; }
+        const auto tell = [&](map_status status, std::string why) {
+            map.status = status;
+            map.why = std::move(why);
+        };
+        const std::string paths = std::to_string(map.paths) + " paths";
+        if (map.empty()) { return tell(map_status::empty, "empty, nothing landed in " + paths); }
+        // The pilot's guess is off by a few per cent; less than that is no news.
+        if (map.size() + map.wanted / 10 < map.wanted) {
+            return tell(map_status::partly, "partly filled, all " + paths + " used up");
+        }
+        tell(map_status::full, "full");
+    }
+
+    const World& scene_;
+    const Lights& lights_;
+    const photon_options& options_;
+    const Run& run_;
+    kinds wanted_{};
+    kinds paths_{};
+    std::array<std::string, 3> why_{};
+    bool piloting_{false};
+};
+
+}  // namespace detail
+
+/// Sends particles from `lights` through `scene` and stores them where they land.
+///
+/// A map holds the photons of its first `paths` paths, and every path has its own fixed numbers: the same maps for any
+/// number of threads. Photons with NaN, infinite or negative power are dropped and counted in the ledger. Never
+/// endless: a map that can hold nothing ends `empty` or `left_out` and says why. Throws `std::invalid_argument` for an
+/// empty pilot.
+template <Scene World, Emitter Lights, Executor Run = in_sequence>
+[[nodiscard]] auto trace_photons(const World& scene, const Lights& lights, const photon_options& options = {},
+                                 const Run& run = {}) {
+    return detail::photon_tracer<World, Lights, Run>{scene, lights, options, run}.maps();
+}
+
+}  // namespace aglow

@@ -1,0 +1,99 @@
+// Irradiance worked out ahead at many points, so that a gather ray reads it with one nearest look-up.
+//
+// Christensen 1999, Faster photon map global illumination.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <aglow/containers/kd_tree.hpp>
+#include <aglow/core/packed_direction.hpp>
+#include <aglow/core/ray.hpp>
+#include <aglow/estimators/estimate.hpp>
+
+namespace aglow {
+
+/// Irradiance at a place: all light that arrives on one side of a surface.
+template <Spectrum S, std::floating_point T>
+struct irradiance_point {
+    vec3<T> position{};
+    vec3<T> normal{};    ///< unit, on the side that is lit
+    S irradiance{};      ///< W/m²
+    band_of<S> error{};  ///< guess of its error
+    T radius{};          ///< what the estimate was spread over: nearer than that, it knows no detail
+};
+
+/// Many irradiance points; the nearest one that fits a surface speaks for it. `const` look-ups from many threads.
+template <Spectrum S, std::floating_point T = float>
+class irradiance_points {
+public:
+    /// What is read at a place.
+    struct reading : estimate<S> {
+        T radius{};  ///< of the estimate that was read
+    };
+
+    irradiance_points() = default;
+
+    /// Points with broken irradiance are left out.
+    template <Executor Run = in_sequence>
+    explicit irradiance_points(std::span<const irradiance_point<S, T>> points, const Run& run = {}) {
+        std::vector<std::uint32_t> sound;
+        for (std::uint32_t i = 0; i < points.size(); ++i) {
+            if (is_radiance(points[i].irradiance)) { sound.push_back(i); }
+        }
+        tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return points[i].position; }, run};
+        stored_.reserve(tree_.size());
+        for (const std::uint32_t i : tree_.order()) {
+            const irradiance_point<S, T>& p = points[sound[i]];
+            stored_.push_back({p.irradiance, p.error, p.radius, packed_direction<std::int8_t>{p.normal}});
+        }
+        tree_.forget_order();
+        reach_ = natural_reach();
+    }
+
+    [[nodiscard]] std::size_t size() const { return stored_.size(); }
+    [[nodiscard]] bool empty() const { return stored_.empty(); }
+    /// Bytes in all.
+    [[nodiscard]] std::size_t memory() const { return tree_.memory() + stored_.capacity() * sizeof(stored); }
+
+    /// The irradiance of the nearest point whose normal is within 37 degrees of unit `normal` and that lies close to
+    /// the tangent plane; empty where none is within reach. O(log n).
+    [[nodiscard]] std::optional<reading> nearest(const vec3<T>& point, const vec3<T>& normal) const {
+        const T slab = reach_ / 8;
+        const auto fits = [&](kd_slot i) {
+            return glm::dot(stored_[i].normal.template direction<T>(), normal) > T(0.8) &&
+                   std::abs(glm::dot(tree_.position(i) - point, normal)) <= slab;
+        };
+        const auto found = tree_.nearest_one(point, square(reach_), fits);
+        if (!found) { return std::nullopt; }
+        const stored& s = stored_[found->slot];
+        return reading{{s.irradiance, s.error}, s.radius};
+    }
+
+private:
+    struct stored {
+        S irradiance;
+        band_of<S> error;
+        T radius;
+        packed_direction<std::int8_t> normal;
+    };
+
+    /// Eight times the spacing of points that lay evenly on the faces of their box.
+    [[nodiscard]] T natural_reach() const {
+        if (empty()) { return 0; }
+        const vec3<T> e = tree_.box().extent();
+        const T area = 2 * (e.x * e.y + e.y * e.z + e.z * e.x);
+        const T far = std::max(max_abs(tree_.box().low), max_abs(tree_.box().high));
+        return std::max(8 * std::sqrt(area / (pi<T> * static_cast<T>(size()))), 16 * position_error(far));
+    }
+
+    kd_tree<T> tree_{};
+    std::vector<stored> stored_{};
+    T reach_{0};
+};
+
+}  // namespace aglow

@@ -1,0 +1,165 @@
+// Photons that landed, and the irradiance that they make: density estimation on a kd-tree.
+//
+// Jensen 1996; counting rules that make the estimate unbiased where the density is even: García Hernández et al. 2012.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <aglow/concepts/spectrum.hpp>
+#include <aglow/containers/kd_tree.hpp>
+#include <aglow/core/parallel.hpp>
+#include <aglow/core/ray.hpp>
+#include <aglow/estimators/density.hpp>
+#include <aglow/estimators/photon.hpp>
+
+namespace aglow {
+
+/// A photon map of spectrum `S` in a scene of scalar `T`. Knows no rays: it is handed photons, and gives irradiance.
+/// Estimates are `const` and safe from many threads, O(k + log n).
+template <Spectrum S, std::floating_point T = float>
+class photon_map {
+public:
+    using spectrum = S;
+    using scalar = T;
+
+    photon_map() = default;
+
+    /// A map of `photons`, their power times `scale` (1 / emitted paths). Photons whose power is NaN, infinite or
+    /// negative, or whose position is not finite, are dropped and counted. The same map for any executor.
+    template <Executor Run = in_sequence>
+    explicit photon_map(std::span<const landed_photon<S, T>> photons, T scale = 1, const Run& run = {}) {
+        std::vector<std::uint32_t> sound;
+        sound.reserve(photons.size());
+        for (std::uint32_t i = 0; i < photons.size(); ++i) {
+            if (is_radiance(photons[i].what.power)) { sound.push_back(i); }
+        }
+        tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return photons[i].position; }, run};
+        photons_.resize(tree_.size());
+        for (std::size_t slot = 0; slot < photons_.size(); ++slot) {
+            photons_[slot] = photons[sound[tree_.order()[slot]]].what;
+            photons_[slot].power = photons_[slot].power * band_of<S>(scale);
+        }
+        dropped_ = photons.size() - tree_.size();
+        tree_.forget_order();
+        measure();
+    }
+
+    [[nodiscard]] std::size_t size() const { return photons_.size(); }
+    [[nodiscard]] bool empty() const { return photons_.empty(); }
+    /// Photons refused for bad numbers.
+    [[nodiscard]] std::size_t dropped() const { return dropped_; }
+    /// Tight box of all photons.
+    [[nodiscard]] const bounds<T>& box() const { return box_; }
+    /// Photons in the map's own order, near ones near each other, and where they lie.
+    [[nodiscard]] std::span<const photon<S>> photons() const { return photons_; }
+    [[nodiscard]] vec3<T> position(std::size_t i) const { return tree_.position(static_cast<kd_slot>(i)); }
+    /// Bytes in all.
+    [[nodiscard]] std::size_t memory() const { return tree_.memory() + photons_.capacity() * sizeof(photon<S>); }
+
+    /// Irradiance at `point` in W/m², from photons that arrived on the side that unit `normal` points out of; black
+    /// where none are near. k nearest within the largest radius: with all k found, the k-1 inner ones over the disc of
+    /// the k-th; with fewer, all over the largest disc. Either is unbiased where the density is even.
+    [[nodiscard]] density_estimate<S, T> irradiance(const vec3<T>& point, const vec3<T>& normal,
+                                                    const density_options& options = {}) const {
+        const auto weigh = [](const photon<S>& p) { return p.power; };
+        return sum(
+            point, options, [&](kd_slot i) { return accepts(i, point, normal, options); }, weigh);
+    }
+
+    /// Radiance that a surface sends out of the photons around `point`, for lobes that depend on where light comes
+    /// from: each photon's power times `f(wi)`, the BSDF in 1/sr. Photons on the side of unit `normal` count, and with
+    /// `both_sides` those of the other side too. No cosine: flux through the surface has it already (Jensen 1996, eq.
+    /// 7).
+    template <std::invocable<vec3<T>> Bsdf>
+    [[nodiscard]] density_estimate<S, T> radiance(const vec3<T>& point, const vec3<T>& normal, bool both_sides,
+                                                  Bsdf&& f, const density_options& options = {}) const {
+        const auto accept = [&](kd_slot i) {
+            return accepts(i, point, normal, options) || (both_sides && accepts(i, point, -normal, options));
+        };
+        const auto weigh = [&](const photon<S>& p) { return p.power * f(p.wi.template direction<T>()); };
+        return sum(point, options, accept, weigh);
+    }
+
+    /// The search radius that an estimate of `count` photons uses when it is given none: four times what it would need
+    /// if the photons lay evenly on the faces of their box.
+    [[nodiscard]] T natural_radius(std::uint32_t count) const {
+        if (empty()) { return 0; }
+        const T even = std::sqrt(area_ * static_cast<T>(count) / (pi<T> * static_cast<T>(size())));
+        return std::max(4 * even, least_radius_);
+    }
+
+private:
+    void measure() {
+        box_ = tree_.box();
+        const vec3<T> e = box_.extent();
+        area_ = 2 * (e.x * e.y + e.y * e.z + e.z * e.x);
+        const T far = empty() ? T(0) : std::max(max_abs(box_.low), max_abs(box_.high));
+        least_radius_ = position_error(far);
+    }
+
+    /// Side, plane and normal: what makes a photon one of this surface. Refused ones never count.
+    [[nodiscard]] bool accepts(kd_slot i, const vec3<T>& point, const vec3<T>& normal,
+                               const density_options& options) const {
+        const photon<S>& p = photons_[i];
+        if (!p.arrived_on(normal)) { return false; }
+        if (glm::dot(p.normal.template direction<T>(), normal) < static_cast<T>(options.normal_cosine)) {
+            return false;
+        }
+        const vec3<T> away = tree_.position(i) - point;
+        const T height = std::abs(glm::dot(away, normal)) - least_radius_;
+        return height <= 0 || height * height <= square(static_cast<T>(options.plane_tolerance)) * length2(away);
+    }
+
+    template <typename Accept, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> sum(const vec3<T>& point, const density_options& options, Accept&& accept,
+                                             Weigh&& weigh) const {
+        if (empty() || options.count == 0) { return {}; }
+        // Scratch only: what it holds never shows in a result.
+        static thread_local kd_scratch<T> scratch;
+        const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(options.count);
+        const auto found = tree_.nearest(point, options.count, scratch, {.radius2 = square(reach)}, accept);
+        const T radius2 = std::max(found.radius2, square(least_radius_));
+        return with_kernel(options.kernel, [&](auto kernel) { return weighted(found, radius2, kernel, weigh); });
+    }
+
+    template <typename Kernel, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> weighted(const kd_neighbours<T>& found, T radius2, const Kernel& kernel,
+                                                  Weigh& weigh) const {
+        using B = band_of<S>;
+        S wide{};
+        S narrow{};
+        B noise2{0};
+        density_estimate<S, T> result;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const T rho2 = found.distances2[i] / radius2;
+            // The k-th lies on the rim and does not count: that is the unbiased rule.
+            if (!(rho2 < 1)) { continue; }
+            const S flux = weigh(photons_[found.slots[i]]);
+            const S share = flux * B(kernel(rho2));
+            wide = wide + share;
+            noise2 += square(max_component(share));
+            if (rho2 < T(0.25)) { narrow = narrow + flux * B(4 * kernel(4 * rho2)); }
+            ++result.count;
+        }
+        const B scale = B(1 / radius2);
+        result.value = wide * scale;
+        result.radius = std::sqrt(radius2);
+        const S apart = wide + narrow * B(-1);
+        const B bias = std::max(max_component(apart), max_component(S(apart * B(-1))));
+        result.error = (bias + 2 * std::sqrt(noise2)) * scale;
+        return result;
+    }
+
+    kd_tree<T> tree_{};
+    std::vector<photon<S>> photons_{};
+    bounds<T> box_{};
+    T area_{0};
+    T least_radius_{0};
+    std::size_t dropped_{0};
+};
+
+}  // namespace aglow
