@@ -26,6 +26,9 @@
 #include <aglow/concepts/surface.hpp>
 
 // containers: where things are
+#include <aglow/containers/octree.hpp>
+#include <aglow/containers/sphere_block.hpp>
+#include <aglow/containers/stable_array.hpp>
 
 // estimators: light from what was stored
 #include <aglow/estimators/density.hpp>
@@ -38,6 +41,7 @@
 // algorithms: light on its way
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/energy_ledger.hpp>
+#include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/final_gather.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>
