@@ -32,7 +32,11 @@
 
 // estimators: light from what was stored
 #include <aglow/estimators/density.hpp>
+#include <aglow/estimators/edge_derivatives.hpp>
 #include <aglow/estimators/estimate.hpp>
+#include <aglow/estimators/hemisphere.hpp>
+#include <aglow/estimators/irradiance_gradients.hpp>
+#include <aglow/estimators/irradiance_hessian.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
 #include <aglow/estimators/kernel.hpp>
 #include <aglow/estimators/photon.hpp>

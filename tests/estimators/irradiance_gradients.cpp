@@ -1,0 +1,116 @@
+#include <aglow/estimators/irradiance_gradients.hpp>
+
+#include <cmath>
+#include <vector>
+
+#include <aglow/core/random.hpp>
+
+#include "support/catch.hpp"
+#include "support/occluded_light.hpp"
+
+using namespace aglow;
+using support::occluded_light;
+using support::point3;
+
+namespace {
+
+struct mean_gradients {
+    vec2<double> translation{};
+    vec2<double> rotation{};
+};
+
+mean_gradients mean_of_many(const occluded_light& scene, const point3& x, const hemisphere_shape& shape, int runs) {
+    const gradient_weights<double> weights{shape};
+    mean_gradients mean;
+    for (int i = 0; i < runs; ++i) {
+        const auto grid = support::sampled<double>(scene, x, shape, static_cast<std::uint64_t>(i));
+        const irradiance_gradients<double> g = gradients(grid, weights);
+        mean.translation += vec2<double>{g.translation.x, g.translation.y} / double(runs);
+        mean.rotation += vec2<double>{g.rotation.x, g.rotation.y} / double(runs);
+    }
+    return mean;
+}
+
+}  // namespace
+
+TEST_CASE("gradients: translation is the derivative of Lambert's formula, with and without an occluder") {
+    for (const bool occluded : {false, true}) {
+        const occluded_light scene{occluded};
+        for (const point3& x : {point3{0.1, 0.2, 0}, point3{-0.6, 0.3, 0}, point3{0.4, -0.5, 0}}) {
+            const mean_gradients mean = mean_of_many(scene, x, {128, 400}, 8);
+            const vec2<double> exact = scene.gradient(x);
+            INFO("occluded " << occluded << " at " << x.x << ' ' << x.y);
+            CHECK(glm::length(mean.translation - exact) < 0.025 * glm::length(exact));
+        }
+    }
+}
+
+TEST_CASE("gradients: rotation is the derivative of Lambert's formula by the normal") {
+    const occluded_light scene{true};
+    for (const point3& x : {point3{0.1, 0.2, 0}, point3{-0.6, 0.3, 0}}) {
+        const mean_gradients mean = mean_of_many(scene, x, {32, 100}, 40);
+        const double h = 1e-4;
+        const auto tilted = [&](double ax, double ay) {
+            // The normal turned by (ax, ay): n' = n + (ax, ay) x n, so that n x n' is (ax, ay).
+            return scene.irradiance(x, glm::normalize(point3{ay, -ax, 1}));
+        };
+        const vec2<double> exact{(tilted(h, 0) - tilted(-h, 0)) / (2 * h), (tilted(0, h) - tilted(0, -h)) / (2 * h)};
+        CHECK(glm::length(mean.rotation - exact) < 0.02 * glm::length(exact));
+    }
+}
+
+TEST_CASE("gradients: every border between two rings counts, the first included") {
+    // A bright cap within the first ring, everything at distance 1 but brighter on one side of ring 0: only the border
+    // between rings 0 and 1 sees a change, so leaving it out gives 0.
+    const hemisphere_shape shape{8, 16};
+    hemisphere_grid<double, double> grid{shape};
+    for (std::uint32_t k = 0; k < 16; ++k) {
+        for (std::uint32_t j = 0; j < 8; ++j) { grid.set(j, k, j == 0 && k < 8 ? 2.0 : 1.0, 1); }
+    }
+    const gradient_weights<double> weights{shape};
+    double radial = 0;
+    for (std::uint32_t k = 0; k < 8; ++k) { radial -= weights.sectors()[k].centre.y * weights.rings()[1].radial; }
+    // The two borders between sectors 7|8 and 15|0 add their exact share.
+    const double turning =
+        weights.rings()[0].turning * (weights.sectors()[0].sideways.y - weights.sectors()[8].sideways.y);
+    CHECK(gradients(grid, weights).translation.y == Approx(radial + turning));
+    CHECK(std::abs(radial) > 0.1);
+}
+
+TEST_CASE("gradients: uniform radiance has none, at any distances") {
+    const hemisphere_shape shape{8, 20};
+    hemisphere_grid<vec3<float>, float> grid{shape};
+    random_sampler<float> random{3};
+    for (std::uint32_t k = 0; k < shape.sectors; ++k) {
+        for (std::uint32_t j = 0; j < shape.rings; ++j) { grid.set(j, k, {1, 2, 3}, 0.1f + random.next_1d()); }
+    }
+    const irradiance_gradients<vec3<float>> g = gradients(grid, gradient_weights<float>{shape});
+    CHECK(g.translation.x == vec3<float>{0});
+    CHECK(g.translation.y == vec3<float>{0});
+    CHECK(glm::length(g.rotation.x) < 1e-5f);
+    CHECK(glm::length(g.rotation.y) < 1e-5f);
+}
+
+TEST_CASE("gradients: bands are strangers to each other") {
+    const hemisphere_shape shape{6, 18};
+    hemisphere_grid<vec3<float>, float> colour{shape};
+    hemisphere_grid<vec3<float>, float> swapped{shape};
+    hemisphere_grid<float, float> gray{shape};
+    random_sampler<float> random{4};
+    for (std::uint32_t k = 0; k < shape.sectors; ++k) {
+        for (std::uint32_t j = 0; j < shape.rings; ++j) {
+            const vec3<float> l{random.next_1d(), random.next_1d(), random.next_1d()};
+            const float distance = 0.5f + random.next_1d();
+            colour.set(j, k, l, distance);
+            swapped.set(j, k, {l.z, l.x, l.y}, distance);
+            gray.set(j, k, l.x, distance);
+        }
+    }
+    const gradient_weights<float> weights{shape};
+    const auto c = gradients(colour, weights);
+    const auto s = gradients(swapped, weights);
+    const auto g = gradients(gray, weights);
+    CHECK(c.translation.x.x == g.translation.x);
+    CHECK(c.rotation.y.x == g.rotation.y);
+    CHECK(s.translation.y == vec3<float>{c.translation.y.z, c.translation.y.x, c.translation.y.y});
+}
