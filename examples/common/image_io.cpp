@@ -1,0 +1,140 @@
+#include "common/image_io.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <stdexcept>
+#include <system_error>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+
+#ifdef AGLOW_EXAMPLES_PNG
+#include <png.h>
+#endif
+
+namespace host {
+namespace {
+
+constexpr const char* bands[3] = {"R", "G", "B"};
+
+std::string channel(const std::string& layer, int band) {
+    return layer.empty() ? bands[band] : layer + "." + bands[band];
+}
+
+/// One band as OpenEXR sees it. It writes through the same type that it reads from, hence no const.
+Imf::Slice slice(char* pixels, std::size_t width, int band) {
+    constexpr std::size_t step = sizeof(aglow::vec3<float>);
+    return {Imf::FLOAT, pixels + sizeof(float) * static_cast<std::size_t>(band), step, step * width};
+}
+
+/// Lets `write` make a file beside `file`, then puts it in place; nothing is left behind where it throws.
+void replace_whole(const std::filesystem::path& file, const std::function<void(const std::string&)>& write) {
+    const std::filesystem::path partial = file.string() + ".part";
+    try {
+        write(partial.string());
+        std::filesystem::rename(partial, file);
+    } catch (const std::exception& e) {
+        std::error_code ignored;
+        std::filesystem::remove(partial, ignored);
+        throw std::runtime_error("cannot write " + file.string() + ": " + e.what());
+    }
+}
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& file, const std::vector<layer>& layers) {
+    if (layers.empty()) { throw std::runtime_error("cannot write " + file.string() + ": no picture"); }
+    const std::size_t width = layers.front().image.width;
+    const std::size_t height = layers.front().image.height;
+    Imf::Header header{static_cast<int>(width), static_cast<int>(height)};
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer frame;
+    for (const layer& l : layers) {
+        if (l.image.width != width || l.image.height != height) {
+            throw std::runtime_error("cannot write " + file.string() + ": layer " + l.name + " has another size");
+        }
+        char* pixels = const_cast<char*>(reinterpret_cast<const char*>(l.image.pixels.data()));
+        for (int band = 0; band < 3; ++band) {
+            header.channels().insert(channel(l.name, band), Imf::Channel{Imf::FLOAT});
+            frame.insert(channel(l.name, band), slice(pixels, width, band));
+        }
+    }
+    replace_whole(file, [&](const std::string& partial) {
+        Imf::OutputFile out{partial.c_str(), header};
+        out.setFrameBuffer(frame);
+        out.writePixels(static_cast<int>(height));
+    });
+}
+
+picture read_exr(const std::filesystem::path& file, const std::string& name) {
+    try {
+        Imf::InputFile in{file.string().c_str()};
+        const auto window = in.header().dataWindow();
+        picture image{static_cast<std::size_t>(window.max.x - window.min.x + 1),
+                      static_cast<std::size_t>(window.max.y - window.min.y + 1)};
+        // Where the pixel (0, 0) would be, which OpenEXR counts from.
+        const auto shift = (window.min.y * static_cast<std::ptrdiff_t>(image.width) + window.min.x) *
+                           static_cast<std::ptrdiff_t>(sizeof(aglow::vec3<float>));
+        char* origin = reinterpret_cast<char*>(image.pixels.data()) - shift;
+        Imf::FrameBuffer frame;
+        for (int band = 0; band < 3; ++band) {
+            const std::string wanted = channel(name, band);
+            if (!in.header().channels().findChannel(wanted)) { throw std::runtime_error("no channel " + wanted); }
+            frame.insert(wanted, slice(origin, image.width, band));
+        }
+        in.setFrameBuffer(frame);
+        in.readPixels(window.min.y, window.max.y);
+        return image;
+    } catch (const std::exception& e) { throw std::runtime_error("cannot read " + file.string() + ": " + e.what()); }
+}
+
+#ifdef AGLOW_EXAMPLES_PNG
+
+bool has_png() { return true; }
+
+namespace {
+
+/// IEC 61966-2-1, rounded to 8 bits; NaN is black.
+std::uint8_t srgb(float linear) {
+    const float x = linear > 0 ? std::min(linear, 1.0f) : 0.0f;
+    const float y = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+    return static_cast<std::uint8_t>(std::lround(y * 255));
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& file, const picture& image, float exposure) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(image.pixels.size() * 3);
+    for (const aglow::vec3<float>& p : image.pixels) {
+        for (int band = 0; band < 3; ++band) { bytes.push_back(srgb(p[band] * exposure)); }
+    }
+    replace_whole(file, [&](const std::string& partial) {
+        png_image out{};
+        out.version = PNG_IMAGE_VERSION;
+        out.width = static_cast<png_uint_32>(image.width);
+        out.height = static_cast<png_uint_32>(image.height);
+        out.format = PNG_FORMAT_RGB;
+        if (!png_image_write_to_file(&out, partial.c_str(), 0, bytes.data(), 0, nullptr)) {
+            throw std::runtime_error(out.message);
+        }
+    });
+}
+
+#else
+
+bool has_png() { return false; }
+
+void write_png(const std::filesystem::path& file, const picture&, float) {
+    throw std::runtime_error("cannot write " + file.string() + ": built without libpng");
+}
+
+#endif
+
+}  // namespace host
