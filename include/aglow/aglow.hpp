@@ -12,6 +12,7 @@
 #include <aglow/core/random.hpp>
 #include <aglow/core/ray.hpp>
 #include <aglow/core/roulette.hpp>
+#include <aglow/core/simd.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/core/vec.hpp>
 #include <aglow/core/version.hpp>
@@ -26,6 +27,11 @@
 #include <aglow/concepts/surface.hpp>
 
 // containers: where things are
+#include <aglow/containers/kd_build.hpp>
+#include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_search.hpp>
+#include <aglow/containers/kd_select.hpp>
+#include <aglow/containers/kd_tree.hpp>
 #include <aglow/containers/octree.hpp>
 #include <aglow/containers/sphere_block.hpp>
 #include <aglow/containers/stable_array.hpp>

@@ -1,0 +1,221 @@
+// How a kd-tree is searched: guess the radius, collect what lies within, select; the answer does not depend on the
+// guess.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_select.hpp>
+#include <aglow/core/simd.hpp>
+
+namespace aglow::detail {
+
+/// Nodes opened at one go: bounds the room that a search needs, however many nodes it meets.
+inline constexpr std::uint32_t kd_stride = 8;
+
+/// One query on its way: the path to the node where it lives, and the nodes it still has to open, by level.
+template <typename T>
+struct kd_probe {
+    vec3<T> point;
+    bool at_home;
+    int level;
+    std::array<std::uint32_t, kd_max_height + 1> home, count, next;
+    alignas(64) T path[kd_max_height + 1][kd_fan];
+    std::uint32_t open[kd_max_height + 1][kd_stride * kd_fan + simd::lanes];
+};
+
+/// Squared distances from a point to the sixteen boxes of a node. Rounded as those of points are, so none is larger
+/// than that of a point in the box.
+template <typename P, typename T>
+[[nodiscard]] P box_distances2(const kd_node<T>& node, const vec3<T>& point) {
+    const auto outside = [](const T* low, const T* high, T at) {
+        const P here = P::all(at);
+        return P::max(P::max(P::sub(P::load(low), here), P::sub(here, P::load(high))), P::all(T(0)));
+    };
+    return P::length2(outside(node.low_x, node.high_x, point.x), outside(node.low_y, node.high_y, point.y),
+                      outside(node.low_z, node.high_z, point.z));
+}
+
+/// Squared distances to the sixteen points of a leaf from place `at` on.
+template <typename P, typename T>
+[[nodiscard]] P point_distances2(const kd_leaf<T>& leaf, std::uint32_t at, const vec3<T>& point) {
+    return P::length2(P::sub(P::load(leaf.x + at), P::all(point.x)), P::sub(P::load(leaf.y + at), P::all(point.y)),
+                      P::sub(P::load(leaf.z + at), P::all(point.z)));
+}
+
+/// Goes one level down towards the nearest box and keeps the distances it saw.
+template <typename P, typename T>
+void step_home(const kd_storage<T>& tree, kd_probe<T>& probe, std::size_t level) {
+    const std::uint32_t node = probe.home[level];
+    const P d = box_distances2<P>(tree.node(static_cast<int>(level), node), probe.point);
+    P::store(probe.path[level], d);
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(P::equal(d, P::all(P::smallest(d)))));
+    probe.home[level - 1] = node * kd_fan + lane;
+}
+
+/// Finds the leaf nearest to the point, greedily, and the distances on the way.
+template <typename P, typename T>
+void go_home(const kd_storage<T>& tree, kd_probe<T>& probe) {
+    auto level = static_cast<std::size_t>(tree.height);
+    probe.home[level] = 0;
+    for (; level > 0; --level) { step_home<P>(tree, probe, level); }
+    probe.at_home = true;
+}
+
+/// Squared radius within which about k points are expected, and a few more, so that it seldom holds fewer.
+template <typename P, typename T>
+[[nodiscard]] T guess_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe, std::uint32_t k) {
+    const T wanted = static_cast<T>(k) + 3 * std::sqrt(static_cast<T>(k)) + 1;
+    const kd_density<T>& crowd = tree.densities[probe.home[1]];
+    const T plane = crowd.area * wanted;
+    const T cube = crowd.volume * std::cbrt(wanted * wanted);
+    const T spread2 = std::max(std::max(crowd.line * wanted * wanted, plane), cube);
+    const T away2 = P::smallest(P::load(probe.path[1]));
+    return away2 > 0 ? simd::rounded(away2 + spread2 + 2 * std::sqrt(away2) * std::sqrt(spread2)) : spread2;
+}
+
+template <typename T>
+void start(const kd_storage<T>& tree, kd_probe<T>& probe) {
+    const auto top = static_cast<std::size_t>(tree.height);
+    probe.level = tree.height;
+    probe.open[top][0] = 0;
+    probe.count[top] = 1;
+    probe.next[top] = 0;
+}
+
+/// Opens up to kd_stride nodes of the probe's level: their children closer than `bound` become the next level's list.
+template <typename P, typename T>
+void open_nodes(const kd_storage<T>& tree, kd_probe<T>& probe, T bound) {
+    const auto level = static_cast<std::size_t>(probe.level--);
+    const std::uint32_t last = std::min(probe.count[level], probe.next[level] + kd_stride);
+    const P limit = P::all(bound);
+    std::uint32_t* children = probe.open[level - 1];
+    std::uint32_t count = 0;
+    for (std::uint32_t i = probe.next[level]; i < last; ++i) {
+        const std::uint32_t node = probe.open[level][i];
+        const bool known = probe.at_home && node == probe.home[level];
+        const P d = known ? P::load(probe.path[level])
+                          : box_distances2<P>(tree.node(static_cast<int>(level), node), probe.point);
+        const std::uint32_t mask = P::less(d, limit);
+        P::compress_numbers(children + count, node * kd_fan, mask);
+        count += static_cast<std::uint32_t>(std::popcount(mask));
+    }
+    probe.next[level] = last;
+    probe.count[level - 1] = count;
+    probe.next[level - 1] = 0;
+}
+
+/// Opens nodes until some of level `goal` are listed, in ascending order; false when there are no more.
+template <typename P, typename T>
+bool advance(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, int goal) {
+    for (;;) {
+        const auto level = static_cast<std::size_t>(probe.level);
+        if (probe.next[level] == probe.count[level]) {
+            if (probe.level == tree.height) { return false; }
+            ++probe.level;
+        } else if (probe.level <= goal) {
+            return true;
+        } else {
+            open_nodes<P>(tree, probe, bound);
+        }
+    }
+}
+
+/// Adds the points of the listed leaves that are closer than `bound`, until all leaves are done or the room is.
+template <typename P, typename T>
+void scan(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, kd_candidates<T>& found, std::uint32_t room) {
+    const P limit = P::all(bound);
+    std::uint32_t count = found.count;
+    for (; probe.next[0] < probe.count[0] && count + kd_leaf_size <= room; ++probe.next[0]) {
+        const std::uint32_t i = probe.open[0][probe.next[0]];
+        for (std::uint32_t at = 0; at < kd_leaf_size; at += simd::lanes) {
+            const P d = point_distances2<P>(tree.leaves[i], at, probe.point);
+            const std::uint32_t mask = P::less(d, limit);
+            P::compress(found.distances2.data() + count, d, mask);
+            P::compress_numbers(found.slots.data() + count, i * kd_leaf_size + at, mask);
+            count += static_cast<std::uint32_t>(std::popcount(mask));
+        }
+    }
+    found.count = count;
+}
+
+/// Takes out the candidates from `first` on that the caller does not accept.
+template <typename T, typename Accept>
+void reject(kd_candidates<T>& found, std::uint32_t first, Accept& accept) {
+    std::uint32_t kept = first;
+    for (std::uint32_t i = first; i < found.count; ++i) {
+        found.distances2[kept] = found.distances2[i];
+        found.slots[kept] = found.slots[i];
+        kept += accept(found.slots[i]) ? 1u : 0u;
+    }
+    found.count = kept;
+}
+
+/// Collects what is closer than `bound`, or the k nearest of it where that is much more than k.
+template <typename P, typename T, typename Accept>
+void collect(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T bound, kd_candidates<T>& found,
+             Accept& accept) {
+    while (advance<P>(tree, probe, bound, 0)) {
+        const std::uint32_t before = found.count;
+        scan<P>(tree, probe, bound, found, found.capacity());
+        reject(found, before, accept);
+        if (found.count + kd_leaf_size > found.capacity()) {
+            bound = std::min(bound, simd::next_above(keep_nearest<P>(tree, found, k, bound)));
+        }
+    }
+}
+
+/// Squared radius that surely holds all points of the smallest node around the probe with k points, from `level` up;
+/// `limit` where there is none.
+template <typename P, typename T>
+[[nodiscard]] T covering_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe, std::uint32_t k, int level,
+                                 T limit) {
+    for (; level < tree.height; ++level) {
+        const std::uint32_t home = probe.home[static_cast<std::size_t>(level)];
+        const std::uint64_t first = kd_capacity(level) * home;
+        if (std::min(kd_capacity(level), tree.size - first) < k) { continue; }
+        const kd_node<T>& node = tree.node(level + 1, home / kd_fan);
+        const std::uint32_t i = home % kd_fan;
+        const auto far = [](T low, T high, T at) { return std::max(std::abs(low - at), std::abs(high - at)); };
+        const T reach2 = simd::length2(far(node.low_x[i], node.high_x[i], probe.point.x),
+                                       far(node.low_y[i], node.high_y[i], probe.point.y),
+                                       far(node.low_z[i], node.high_z[i], probe.point.z));
+        return reach2 < limit ? simd::next_above(reach2) : limit;
+    }
+    return limit;
+}
+
+/// The radius to try after one that held too few.
+template <typename P, typename T>
+[[nodiscard]] T larger_radius2(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, std::uint32_t had,
+                               int attempt, T radius2, T limit) {
+    if (attempt == 0 && had * 4 >= k && had > 0) {
+        const T wanted = static_cast<T>(k) + 2 * std::sqrt(static_cast<T>(k)) + 1;
+        return radius2 * (T(1.25) * wanted / static_cast<T>(had));
+    }
+    if (!probe.at_home) { go_home<P>(tree, probe); }
+    return std::max(covering_radius2<P>(tree, probe, k, attempt, limit), radius2);
+}
+
+/// Finds the k nearest accepted points closer than `limit`, starting with a radius of about `radius2`; returns the
+/// distance2 of the k-th, or `limit` when there are fewer. The probe stands at its start.
+template <typename P, typename T, typename Accept>
+T find_nearest(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T radius2, T limit,
+               kd_candidates<T>& found, Accept& accept) {
+    for (int attempt = 0;; ++attempt) {
+        radius2 = std::min(radius2, limit);
+        found.count = 0;
+        collect<P>(tree, probe, k, radius2, found, accept);
+        if (found.count >= k) { return keep_nearest<P>(tree, found, k, radius2); }
+        if (radius2 >= limit || attempt > kd_max_height) { return limit; }
+        radius2 = larger_radius2<P>(tree, probe, k, found.count, attempt, radius2, limit);
+        start(tree, probe);
+    }
+}
+
+}  // namespace aglow::detail

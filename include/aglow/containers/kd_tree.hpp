@@ -1,0 +1,279 @@
+// A kd-tree of points that stay: the k nearest, the nearest, and all within a radius, exactly.
+//
+// Halved at the exact median of the widest side and laid out without pointers: sixteen children a node, full leaves. A
+// search guesses the radius from how crowded the place is, collects all within, and selects; a wrong guess costs time
+// and never changes the answer. All that a search returns has one order and one set of bits, whatever the guess, the
+// number of threads and the instruction set.
+#pragma once
+
+#include <cassert>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <ranges>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include <aglow/containers/kd_build.hpp>
+#include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_search.hpp>
+#include <aglow/core/bounds.hpp>
+#include <aglow/core/numbers.hpp>
+#include <aglow/core/parallel.hpp>
+#include <aglow/core/simd.hpp>
+#include <aglow/core/vec.hpp>
+
+namespace aglow {
+
+/// The place of an item in a tree's own order, in [0, size()). Slots of near items are near each other.
+using kd_slot = std::uint32_t;
+
+/// How far a search looks.
+template <typename T>
+struct kd_reach {
+    /// Only what is strictly closer counts; the radius, squared. Zero finds nothing.
+    T radius2{std::numeric_limits<T>::infinity()};
+    /// Distance2 that the k-th is expected at, as of a neighbouring query; 0: guess from how crowded the tree is there.
+    /// It changes the time, never the answer.
+    T hint2{0};
+};
+
+/// One item found.
+template <typename T>
+struct kd_found {
+    kd_slot slot;
+    /// Squared distance from the query.
+    T distance2;
+};
+
+/// Items found by a search, in ascending order of slots. A view of the scratch, valid until its next use.
+template <typename T>
+struct kd_neighbours {
+    std::span<const kd_slot> slots;
+    /// Squared distance of each from the query.
+    std::span<const T> distances2;
+    /// The largest of `distances2` if as many were found as asked for, else the squared radius asked for.
+    T radius2;
+
+    [[nodiscard]] std::size_t size() const { return slots.size(); }
+    [[nodiscard]] bool empty() const { return slots.empty(); }
+};
+
+/// What a search needs room for; a thread keeps one and uses it for all its searches, of any tree.
+template <typename T>
+class kd_scratch {
+    template <typename>
+    friend class kd_tree;
+    std::vector<detail::kd_probe<T>> probes_{1};
+    detail::kd_candidates<T> found_;
+};
+
+/// Accepts every item.
+struct kd_accept_all {
+    constexpr bool operator()(kd_slot) const { return true; }
+};
+
+/// Something that says whether the item of a slot may be found: `accept(slot)`. It is asked only about items within
+/// the radius, maybe more than once for one search; what it refuses counts neither towards k nor towards the radius.
+template <typename F>
+concept KdAccept = std::predicate<F&, kd_slot>;
+
+/// Points that stay, of scalar `T`. It keeps positions and no items; an owner that stores its payload in the tree's
+/// order (`payload[slot] = items[order()[slot]]`) finds it where the search found the position.
+///
+/// Exact: distances are `simd::distance2`, the same bits as any brute force that uses it; of items just as far as the
+/// k-th, those of lower original index are kept. Coordinates may have any unit as long as the squares of distances
+/// neither overflow nor underflow (|x| within 1e-18 to 1e18 for float). Expects finite query points.
+/// All queries are const and safe from many threads, each with its own scratch.
+template <typename T>
+class kd_tree {
+public:
+    using scalar = T;
+
+    /// A tree of nothing.
+    kd_tree() = default;
+
+    /// A tree of `position(item)` for every item; positions that are not finite are left out and counted in
+    /// `dropped()`. The same tree for any executor. O(n log n), with room for 36 bytes more per point while it runs
+    /// (float). Throws std::length_error for 2^32 - 64 items or more.
+    template <std::ranges::random_access_range Items, typename Position, Executor E = in_sequence>
+        requires std::convertible_to<std::invoke_result_t<const Position&, std::ranges::range_reference_t<const Items>>,
+                                     vec3<T>>
+        kd_tree(const Items& items, const Position& position, const E& run = {});
+
+    /// Items in the tree.
+    [[nodiscard]] std::size_t size() const { return tree_.size; }
+    [[nodiscard]] bool empty() const { return tree_.size == 0; }
+    /// Items left out because their position was not finite.
+    [[nodiscard]] std::size_t dropped() const { return dropped_; }
+    /// Tight box of all positions; empty for an empty tree.
+    [[nodiscard]] bounds<T> box() const;
+    /// Position of the item in `slot`. Expects slot < size().
+    [[nodiscard]] vec3<T> position(kd_slot slot) const { return tree_.position(slot); }
+    /// Original index of the item in each slot; empty once forgotten.
+    [[nodiscard]] std::span<const std::uint32_t> order() const { return tree_.order; }
+    /// Frees the original indices, 4 bytes an item. From then on ties are broken by slot, which is still unique.
+    void forget_order() { tree_.order = std::vector<std::uint32_t>(); }
+    /// Bytes of all that the tree holds.
+    [[nodiscard]] std::size_t memory() const;
+
+    /// The `k` accepted items nearest to `point`, strictly within the reach; fewer where there are fewer.
+    template <KdAccept Accept = kd_accept_all>
+    [[nodiscard]] kd_neighbours<T> nearest(const vec3<T>& point, std::size_t k, kd_scratch<T>& scratch,
+                                           kd_reach<T> reach = {}, Accept&& accept = {}) const;
+
+    /// As `nearest` for every point, faster where points are many: `visit(i, neighbours)` is called in order of i, and
+    /// `accept(i, slot)` says what counts for point i.
+    template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit>
+    void nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
+                 Visit&& visit) const {
+        nearest(points, k, scratch, reach, visit, [](std::size_t, kd_slot) { return true; });
+    }
+    template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit, std::predicate<std::size_t, kd_slot> Accept>
+    void nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
+                 Visit&& visit, Accept&& accept) const;
+
+    /// The accepted item nearest to `point`, strictly within the radius.
+    template <KdAccept Accept = kd_accept_all>
+    [[nodiscard]] std::optional<kd_found<T>> nearest_one(const vec3<T>& point,
+                                                         T radius2 = std::numeric_limits<T>::infinity(),
+                                                         Accept&& accept = {}) const;
+
+    /// Calls `visit(slot, distance2)` for every item strictly within the radius, in ascending order of slots.
+    template <std::invocable<kd_slot, T> Visit>
+    void within(const vec3<T>& point, T radius2, Visit&& visit) const;
+
+private:
+    using pack = simd::best<T>;
+    static constexpr std::size_t group = 8;
+
+    /// Without an infinity, which -ffast-math does not know.
+    static T clamp(T radius2) { return std::min(radius2, std::numeric_limits<T>::max()); }
+
+    template <typename Accept>
+    kd_neighbours<T> finish(detail::kd_probe<T>& probe, std::size_t k, detail::kd_candidates<T>& found,
+                            kd_reach<T> reach, Accept& accept) const;
+
+    detail::kd_storage<T> tree_;
+    std::size_t dropped_{0};
+};
+
+template <typename T>
+template <std::ranges::random_access_range Items, typename Position, Executor E>
+    requires std::convertible_to<std::invoke_result_t<const Position&, std::ranges::range_reference_t<const Items>>,
+                                 vec3<T>>
+    kd_tree<T>::kd_tree(const Items& items, const Position& position, const E& run) {
+        const auto count = static_cast<std::size_t>(std::ranges::size(items));
+        if (count >= std::numeric_limits<std::uint32_t>::max() - 64) {
+            throw std::length_error("aglow::kd_tree: more items than a 32-bit slot can number");
+        }
+        detail::kd_cloud<T> cloud;
+        cloud.resize(count);
+        std::uint32_t kept = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const vec3<T> p = std::invoke(position, std::ranges::begin(items)[static_cast<std::ptrdiff_t>(i)]);
+            if (!is_finite(p.x) || !is_finite(p.y) || !is_finite(p.z)) { continue; }
+            cloud.at[0][kept] = p.x;
+            cloud.at[1][kept] = p.y;
+            cloud.at[2][kept] = p.z;
+            cloud.index[kept++] = i;
+        }
+        dropped_ = count - kept;
+        detail::kd_cloud<T> spare;
+        spare.resize(kept);
+        tree_.shape(kept);
+        if (kept > 0) { detail::kd_builder<T>{tree_, cloud, spare}.build(run); }
+    }
+
+template <typename T>
+bounds<T> kd_tree<T>::box() const {
+    bounds<T> all;
+    if (empty()) { return all; }
+    const detail::kd_node<T>& top = tree_.node(tree_.height, 0);
+    for (unsigned i = 0; i < detail::kd_blocks(tree_.size, detail::kd_capacity(tree_.height - 1)); ++i) {
+        all.add({top.low_x[i], top.low_y[i], top.low_z[i]});
+        all.add({top.high_x[i], top.high_y[i], top.high_z[i]});
+    }
+    return all;
+}
+
+template <typename T>
+std::size_t kd_tree<T>::memory() const {
+    const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    return bytes(tree_.leaves) + bytes(tree_.nodes) + bytes(tree_.densities) + bytes(tree_.order);
+}
+
+template <typename T>
+template <typename Accept>
+kd_neighbours<T> kd_tree<T>::finish(detail::kd_probe<T>& probe, std::size_t k, detail::kd_candidates<T>& found,
+                                    kd_reach<T> reach, Accept& accept) const {
+    const auto wanted = static_cast<std::uint32_t>(std::min<std::size_t>(k, size()));
+    const T limit = clamp(reach.radius2);
+    found.count = 0;
+    if (wanted == 0 || !(limit > 0)) { return {{}, {}, reach.radius2}; }
+    found.reserve(2 * std::size_t{wanted} + 1024);
+    T guess;
+    if (reach.hint2 > 0) {
+        guess = reach.hint2 * (1 + T(2.6) / std::sqrt(static_cast<T>(wanted)));
+        probe.at_home = false;
+    } else {
+        detail::go_home<pack>(tree_, probe);
+        guess = detail::guess_radius2<pack>(tree_, probe, wanted);
+    }
+    guess = std::max(guess, std::numeric_limits<T>::min());
+    detail::start(tree_, probe);
+    T farthest = detail::find_nearest<pack>(tree_, probe, wanted, guess, limit, found, accept);
+    if (found.count < k) { farthest = reach.radius2; }
+    return {{found.slots.data(), found.count}, {found.distances2.data(), found.count}, farthest};
+}
+
+template <typename T>
+template <KdAccept Accept>
+kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
+                                     Accept&& accept) const {
+    detail::kd_probe<T>& probe = scratch.probes_.front();
+    probe.point = point;
+    return finish(probe, k, scratch.found_, reach, accept);
+}
+
+template <typename T>
+template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit, std::predicate<std::size_t, kd_slot> Accept>
+void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
+                         Visit&& visit, Accept&& accept) const {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        visit(i, nearest(points[i], k, scratch, reach, [&](kd_slot slot) { return accept(i, slot); }));
+    }
+}
+
+template <typename T>
+template <KdAccept Accept>
+std::optional<kd_found<T>> kd_tree<T>::nearest_one(const vec3<T>& point, T radius2, Accept&& accept) const {
+    kd_scratch<T> scratch;
+    const kd_neighbours<T> found = nearest(point, 1, scratch, {radius2}, accept);
+    if (found.empty()) { return std::nullopt; }
+    return kd_found<T>{found.slots[0], found.distances2[0]};
+}
+
+template <typename T>
+template <std::invocable<kd_slot, T> Visit>
+void kd_tree<T>::within(const vec3<T>& point, T radius2, Visit&& visit) const {
+    if (empty()) { return; }
+    detail::kd_probe<T> probe;
+    probe.point = point;
+    probe.at_home = false;
+    detail::start(tree_, probe);
+    detail::kd_candidates<T> found;
+    found.reserve(1024);
+    const T bound = clamp(radius2);
+    while (detail::advance<pack>(tree_, probe, bound, 0)) {
+        detail::scan<pack>(tree_, probe, bound, found, found.capacity());
+        for (std::uint32_t i = 0; i < found.count; ++i) { visit(found.slots[i], found.distances2[i]); }
+        found.count = 0;
+    }
+}
+
+}  // namespace aglow

@@ -1,0 +1,357 @@
+// The tree is compared with brute force: every distance computed, everything sorted.
+#include <aglow/containers/kd_tree.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+
+using namespace aglow;
+
+namespace {
+
+/// Clouds with the shapes that trees stumble over.
+template <typename T>
+std::vector<vec3<T>> cloud(const std::string& shape, std::size_t count, T scale = 1) {
+    std::mt19937 random{12345};
+    const auto u = [&] { return static_cast<T>(random() >> 8) / T(1 << 24); };
+    std::vector<vec3<T>> points;
+    std::vector<vec3<T>> stock;
+    for (int i = 0; i < 37; ++i) { stock.push_back({u(), u(), u()}); }
+    for (std::size_t i = 0; i < count; ++i) {
+        vec3<T> p{u(), u(), u()};
+        if (shape == "plane") { p.z = T(0.25); }
+        if (shape == "tilted plane") { p.z = p.x * T(0.5) + p.y * T(0.25); }
+        if (shape == "line") { p = {p.x, p.x, p.x}; }
+        if (shape == "one point") { p = {T(0.5), T(-0.25), T(3)}; }
+        if (shape == "repeated") { p = stock[random() % stock.size()]; }
+        if (shape == "lattice") { p = {T(random() % 9), T(random() % 9), T(random() % 9)}; }
+        if (shape == "walls" && i % 5 != 0) { p[static_cast<int>(random() % 3)] = T(random() % 2); }
+        if (shape == "walls" && i % 5 == 0) { p = p * T(0.01) + vec3<T>(T(0.5), T(0.5), 0); }
+        if (shape == "clusters") { p = stock[i % 5] + p * T(1e-4); }
+        points.push_back(p * scale);
+    }
+    return points;
+}
+
+const std::vector<std::string> shapes{"cube",     "plane",   "tilted plane", "line",    "one point",
+                                      "repeated", "lattice", "walls",        "clusters"};
+const std::vector<std::size_t> sizes{1, 2, 15, 16, 17, 31, 32, 33, 63, 64, 65, 100, 511, 512, 513, 1500, 8193, 9000};
+
+/// Queries among the points, on them, beside them and far away.
+template <typename T>
+std::vector<vec3<T>> queries(const std::vector<vec3<T>>& points, T scale = 1) {
+    std::mt19937 random{99};
+    const auto u = [&] { return static_cast<T>(random() >> 8) / T(1 << 24); };
+    std::vector<vec3<T>> all;
+    for (int i = 0; i < 3; ++i) {
+        all.push_back(points[random() % points.size()]);
+        all.push_back(points[random() % points.size()] + vec3<T>(u(), u(), u()) * T(0.01) * scale);
+        all.push_back(vec3<T>(u(), u(), u()) * scale);
+    }
+    all.push_back(vec3<T>(-30, 2, 5) * scale);
+    all.push_back(vec3<T>(T(1e5), T(-1e5), T(1e5)) * scale);
+    return all;
+}
+
+template <typename T>
+struct item {
+    T distance2;
+    std::uint32_t index;
+    bool operator==(const item&) const = default;
+    auto operator<=>(const item&) const = default;
+};
+
+template <typename T, typename Accept>
+std::vector<item<T>> brute_force(const std::vector<vec3<T>>& points, vec3<T> q, std::size_t k, T radius2,
+                                 Accept accept) {
+    std::vector<item<T>> all;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const T d2 = simd::distance2(points[i], q);
+        if (d2 < radius2 && accept(i)) { all.push_back({d2, i}); }
+    }
+    std::sort(all.begin(), all.end());
+    if (all.size() > k) { all.resize(k); }
+    return all;
+}
+
+template <typename T>
+std::vector<item<T>> sorted(const kd_tree<T>& tree, const kd_neighbours<T>& found) {
+    std::vector<item<T>> all;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        all.push_back({found.distances2[i], tree.order()[found.slots[i]]});
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+template <typename T>
+kd_tree<T> tree_of(const std::vector<vec3<T>>& points) {
+    return kd_tree<T>{points, [](const vec3<T>& p) { return p; }};
+}
+
+const auto all_of_them = [](std::uint32_t) { return true; };
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("kd_tree: k nearest are what brute force finds, ties by index", "[kd_tree]", float, double) {
+    using T = TestType;
+    kd_scratch<T> scratch;
+    for (const std::string& shape : shapes) {
+        for (const std::size_t n : sizes) {
+            const auto points = cloud<T>(shape, n);
+            const auto tree = tree_of(points);
+            for (const vec3<T>& q : queries(points)) {
+                for (const std::size_t k : {std::size_t{1}, std::size_t{8}, std::size_t{50}, std::size_t{200}, n}) {
+                    const auto truth = brute_force(points, q, k, std::numeric_limits<T>::infinity(), all_of_them);
+                    const auto found = tree.nearest(q, k, scratch);
+                    CAPTURE(shape, n, k, q.x, q.y, q.z);
+                    REQUIRE(sorted(tree, found) == truth);
+                    REQUIRE(std::is_sorted(found.slots.begin(), found.slots.end()));
+                    if (truth.size() == k) { REQUIRE(found.radius2 == truth.back().distance2); }
+                }
+            }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: k nearest within a radius are what brute force finds", "[kd_tree]", float, double) {
+    using T = TestType;
+    kd_scratch<T> scratch;
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 3000);
+        const auto tree = tree_of(points);
+        for (const vec3<T>& q : queries(points)) {
+            for (const T radius2 : {T(0), T(1e-6), T(1e-3), T(0.01), T(0.3), T(1e9), T(1e12)}) {
+                CAPTURE(shape, radius2, q.x, q.y, q.z);
+                const auto truth = brute_force(points, q, 70, radius2, all_of_them);
+                const auto found = tree.nearest(q, 70, scratch, {radius2});
+                REQUIRE(sorted(tree, found) == truth);
+                if (truth.size() < 70) { REQUIRE(found.radius2 == radius2); }
+            }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: a hint, good or bad, changes neither the items nor their order", "[kd_tree]", float,
+                   double) {
+    using T = TestType;
+    kd_scratch<T> scratch;
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 5000);
+        const auto tree = tree_of(points);
+        for (const vec3<T>& q : queries(points)) {
+            const auto plain = tree.nearest(q, 20, scratch);
+            const std::vector<kd_slot> slots(plain.slots.begin(), plain.slots.end());
+            for (const T factor : {T(1e-30), T(1e-3), T(0.9), T(1), T(2), T(1e3), T(1e30)}) {
+                const T hint2 = (plain.radius2 > 0 ? plain.radius2 : T(1e-3)) * factor;
+                CAPTURE(shape, factor, q.x, q.y, q.z);
+                const auto hinted = tree.nearest(q, 20, scratch, {.hint2 = hint2});
+                REQUIRE(std::equal(slots.begin(), slots.end(), hinted.slots.begin(), hinted.slots.end()));
+            }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: what is refused counts neither towards k nor the radius", "[kd_tree]", float, double) {
+    using T = TestType;
+    kd_scratch<T> scratch;
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 4000);
+        const auto tree = tree_of(points);
+        for (const std::uint32_t every : {2u, 7u, 500u, 5000u}) {
+            const auto odd = [&](std::uint32_t index) { return index % every == 1; };
+            const auto accept = [&](kd_slot slot) { return odd(tree.order()[slot]); };
+            for (const vec3<T>& q : queries(points)) {
+                CAPTURE(shape, every, q.x, q.y, q.z);
+                for (const std::size_t k : {std::size_t{5}, std::size_t{40}}) {
+                    const auto truth = brute_force(points, q, k, T(1e12), odd);
+                    REQUIRE(sorted(tree, tree.nearest(q, k, scratch, {T(1e12)}, accept)) == truth);
+                }
+                const auto one = brute_force(points, q, 1, T(0.01), odd);
+                const auto found = tree.nearest_one(q, T(0.01), accept);
+                REQUIRE(found.has_value() == !one.empty());
+                if (found) { REQUIRE(item<T>{found->distance2, tree.order()[found->slot]} == one.front()); }
+            }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: the nearest one is the first of brute force, ties by index", "[kd_tree]", float, double) {
+    using T = TestType;
+    for (const std::string& shape : shapes) {
+        for (const std::size_t n : sizes) {
+            const auto points = cloud<T>(shape, n);
+            const auto tree = tree_of(points);
+            for (const vec3<T>& q : queries(points)) {
+                CAPTURE(shape, n, q.x, q.y, q.z);
+                const auto truth = brute_force(points, q, 1, T(1e15), all_of_them);
+                const auto found = tree.nearest_one(q);
+                REQUIRE(found);
+                REQUIRE(item<T>{found->distance2, tree.order()[found->slot]} == truth.front());
+                REQUIRE_FALSE(tree.nearest_one(q, truth.front().distance2));
+            }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: all strictly within a radius are visited once, in order", "[kd_tree]", float, double) {
+    using T = TestType;
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 6000);
+        const auto tree = tree_of(points);
+        for (const vec3<T>& q : queries(points)) {
+            for (const T radius2 : {T(0), T(1e-5), T(0.01), T(1), std::numeric_limits<T>::infinity()}) {
+                CAPTURE(shape, radius2, q.x, q.y, q.z);
+                const auto truth = brute_force(points, q, points.size(), radius2, all_of_them);
+                std::vector<item<T>> found;
+                std::vector<kd_slot> slots;
+                tree.within(q, radius2, [&](kd_slot slot, T d2) {
+                    found.push_back({d2, tree.order()[slot]});
+                    slots.push_back(slot);
+                });
+                REQUIRE(std::is_sorted(slots.begin(), slots.end()));
+                std::sort(found.begin(), found.end());
+                REQUIRE(found == truth);
+            }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: a batch finds what single queries find", "[kd_tree]", float, double) {
+    using T = TestType;
+    kd_scratch<T> scratch;
+    kd_scratch<T> other;
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 9000);
+        const auto tree = tree_of(points);
+        const auto where = queries(points);
+        const auto accept = [](std::size_t i, kd_slot slot) { return (slot + i) % 3 != 0; };
+        for (const T radius2 : {T(0), T(0.01), std::numeric_limits<T>::infinity()}) {
+            std::size_t next = 0;
+            tree.nearest(where, 30, scratch, {radius2}, [&](std::size_t i, const kd_neighbours<T>& found) {
+                CAPTURE(shape, radius2, i);
+                REQUIRE(i == next++);
+                const auto single = tree.nearest(where[i], 30, other, {radius2});
+                REQUIRE(std::equal(found.slots.begin(), found.slots.end(), single.slots.begin(), single.slots.end()));
+                REQUIRE(found.radius2 == single.radius2);
+            });
+            REQUIRE(next == where.size());
+            const auto check = [&](std::size_t i, const kd_neighbours<T>& found) {
+                const auto single =
+                    tree.nearest(where[i], 30, other, {radius2}, [&](kd_slot slot) { return accept(i, slot); });
+                REQUIRE(std::equal(found.slots.begin(), found.slots.end(), single.slots.begin(), single.slots.end()));
+            };
+            tree.nearest(where, 30, scratch, {radius2}, check, accept);
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: any number of threads makes the same tree", "[kd_tree]", float, double) {
+    using T = TestType;
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 50'001);
+        const auto same = [](const vec3<T>& p) { return p; };
+        const kd_tree<T> one{points, same};
+        for (const unsigned threads : {2u, 3u, 8u}) {
+            const kd_tree<T> many{points, same, own_threads{threads}};
+            CAPTURE(shape, threads);
+            REQUIRE(std::equal(one.order().begin(), one.order().end(), many.order().begin(), many.order().end()));
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: every item has one slot and keeps its position", "[kd_tree]", float, double) {
+    using T = TestType;
+    for (const std::string& shape : shapes) {
+        for (const std::size_t n : sizes) {
+            const auto points = cloud<T>(shape, n);
+            const auto tree = tree_of(points);
+            REQUIRE(tree.size() == n);
+            std::vector<std::uint32_t> seen(tree.order().begin(), tree.order().end());
+            bounds<T> box;
+            for (kd_slot slot = 0; slot < n; ++slot) {
+                REQUIRE(tree.position(slot) == points[tree.order()[slot]]);
+                box.add(tree.position(slot));
+            }
+            REQUIRE(tree.box().low == box.low);
+            REQUIRE(tree.box().high == box.high);
+            std::sort(seen.begin(), seen.end());
+            for (std::uint32_t i = 0; i < n; ++i) { REQUIRE(seen[i] == i); }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: scaling by a power of two scales the answer bit by bit", "[kd_tree]", float, double) {
+    using T = TestType;
+    kd_scratch<T> scratch;
+    kd_scratch<T> other;
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 3000);
+        const auto tree = tree_of(points);
+        const auto where = queries(points);
+        for (const int power : {-30, -7, 1, 30}) {
+            const T scale = std::ldexp(T(1), power);
+            const auto scaled = tree_of(cloud<T>(shape, 3000, scale));
+            REQUIRE(std::equal(tree.order().begin(), tree.order().end(), scaled.order().begin(), scaled.order().end()));
+            for (const vec3<T>& q : where) {
+                CAPTURE(shape, power, q.x, q.y, q.z);
+                const auto found = tree.nearest(q, 60, scratch);
+                const auto again = scaled.nearest(q * scale, 60, other);
+                REQUIRE(std::equal(found.slots.begin(), found.slots.end(), again.slots.begin(), again.slots.end()));
+                REQUIRE(again.radius2 == found.radius2 * scale * scale);
+            }
+        }
+    }
+}
+
+TEST_CASE("kd_tree: positions that are not finite are left out and counted", "[kd_tree]") {
+    auto points = cloud<float>("cube", 1000);
+    points[3].x = std::numeric_limits<float>::quiet_NaN();
+    points[500].y = std::numeric_limits<float>::infinity();
+    points[999].z = -std::numeric_limits<float>::infinity();
+    const auto tree = tree_of(points);
+    CHECK(tree.size() == 997);
+    CHECK(tree.dropped() == 3);
+    for (const std::uint32_t index : tree.order()) { CHECK((index != 3 && index != 500 && index != 999)); }
+    const std::vector<vec3<float>> bad(5, vec3<float>(std::numeric_limits<float>::quiet_NaN()));
+    CHECK(tree_of(bad).empty());
+    CHECK(tree_of(bad).dropped() == 5);
+}
+
+TEST_CASE("kd_tree: a tree of nothing finds nothing", "[kd_tree]") {
+    kd_scratch<float> scratch;
+    for (const kd_tree<float>& tree : {kd_tree<float>{}, tree_of(std::vector<vec3<float>>{})}) {
+        CHECK(tree.empty());
+        CHECK(tree.box().empty());
+        CHECK(tree.nearest({0, 0, 0}, 5, scratch).empty());
+        CHECK_FALSE(tree.nearest_one({0, 0, 0}));
+        tree.within({0, 0, 0}, 1.0f, [](kd_slot, float) { FAIL("an item of nothing"); });
+    }
+    CHECK(tree_of(cloud<float>("cube", 10)).nearest({0, 0, 0}, 0, scratch).empty());
+}
+
+TEST_CASE("kd_tree: with the order forgotten ties go by slot", "[kd_tree]") {
+    kd_scratch<float> scratch;
+    auto tree = tree_of(cloud<float>("lattice", 2000));
+    const auto before = tree.memory();
+    tree.forget_order();
+    CHECK(tree.order().empty());
+    CHECK(before - tree.memory() == 4 * 2000);
+    std::vector<item<float>> truth;
+    for (kd_slot slot = 0; slot < 2000; ++slot) {
+        truth.push_back({simd::distance2(tree.position(slot), {4, 4, 4}), slot});
+    }
+    std::sort(truth.begin(), truth.end());
+    truth.resize(25);
+    std::vector<item<float>> found;
+    const auto neighbours = tree.nearest({4, 4, 4}, 25, scratch);
+    for (std::size_t i = 0; i < 25; ++i) { found.push_back({neighbours.distances2[i], neighbours.slots[i]}); }
+    std::sort(found.begin(), found.end());
+    CHECK(found == truth);
+}
