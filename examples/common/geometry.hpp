@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <aglow/core/bounds.hpp>
@@ -102,6 +103,21 @@ private:
             lanes x, y, z, w;
         } edge[4];
     };
+
+    /// Halves the lanes until the smallest distance, and the lane it came from, is in the first.
+    template <std::size_t Half>
+    static void bring_nearest_to_front(lanes& best, marks& which) {
+        const lanes other = swapped<Half>(best, std::make_index_sequence<width>{});
+        const marks other_which = swapped<Half>(which, std::make_index_sequence<width>{});
+        const marks nearer = other < best;
+        best = nearer ? other : best;
+        which = nearer ? other_which : which;
+        if constexpr (Half > 1) { bring_nearest_to_front<Half / 2>(best, which); }
+    }
+    template <std::size_t Half, typename V, std::size_t... Lane>
+    static V swapped(V v, std::index_sequence<Lane...>) {
+        return __builtin_shufflevector(v, v, static_cast<int>(Lane ^ Half)...);
+    }
 
     std::uint32_t add_polygon(const std::array<vec3<T>, 4>& corners, std::size_t count) {
         for (const vec3<T>& corner : corners) { bounds_.add(corner); }
@@ -198,13 +214,9 @@ bool geometry<T>::nearest(const aglow::ray<T>& r, meeting<T>& found) const {
         which = take ? number : which;
         number += static_cast<integer>(width);
     }
-    T distance = r.reach;
-    integer lane = -1;
-    for (std::size_t i = 0; i < width; ++i) {
-        const bool nearer = best[i] < distance;
-        distance = nearer ? best[i] : distance;
-        lane = nearer ? which[i] : lane;
-    }
+    bring_nearest_to_front<width / 2>(best, which);
+    T distance = best[0];
+    const integer lane = which[0];
     const sphere* round = nullptr;
     for (const sphere& s : spheres_) {
         if (meets(s, r, distance, distance)) { round = &s; }

@@ -75,14 +75,15 @@ template <typename T>
     return s;
 }
 
-/// The diffuse box on a floor of rough metal.
+/// The diffuse box on a floor with a rough coat.
 template <typename T>
 [[nodiscard]] scene_description<T> glossy_floor() {
     scene_description<T> s{.name = "glossy-floor",
-                           .about = "the Cornell box with its blocks on a floor of rough metal"};
-    const material<T> metal{.glossy = vec3<T>{T(0.7), T(0.65), T(0.6)}, .roughness = T(0.15)};
+                           .about = "the Cornell box with its blocks on a floor with a rough coat"};
+    const material<T> coated{
+        .diffuse = vec3<T>{T(0.35), T(0.32), T(0.3)}, .glossy = vec3<T>{T(0.3)}, .roughness = T(0.15)};
     add_cornell_lamp(s);
-    const std::size_t white = add_cornell_walls(s, &metal);
+    const std::size_t white = add_cornell_walls(s, &coated);
     add_cornell_blocks(s, white, white);
     return s;
 }
