@@ -60,7 +60,9 @@
 #include <aglow/algorithms/photon_options.hpp>
 #include <aglow/algorithms/photon_source.hpp>
 #include <aglow/algorithms/photon_walk.hpp>
+#include <aglow/algorithms/plan.hpp>
 #include <aglow/algorithms/precompute_irradiance.hpp>
+#include <aglow/algorithms/progressive.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
 
 // report: how good is it

@@ -18,7 +18,7 @@ namespace aglow {
 /// How long paths get, and how they end.
 struct path_options {
     std::uint32_t most_bounces{0};   ///< depth cap, 0 for none; a cap makes the picture darker
-    std::uint32_t roulette_from{2};  ///< bounces before Russian roulette may end a path
+    std::uint32_t roulette_from{5};  ///< bounces before Russian roulette may end a path
 };
 
 /// Which emission a walk takes for itself where its first ray, or a chain of mirrors after it, meets a light.

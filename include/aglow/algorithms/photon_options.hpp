@@ -12,6 +12,13 @@
 
 namespace aglow {
 
+/// Emitted paths that each map takes its photons from.
+struct photon_paths {
+    std::size_t direct{0};
+    std::size_t caustic{0};
+    std::size_t indirect{0};
+};
+
 /// How many photons, and how.
 struct photon_options {
     std::size_t direct{0};                   ///< photons wanted straight from the lights; 0 leaves the map out
@@ -19,6 +26,7 @@ struct photon_options {
     std::size_t indirect{0};                 ///< wanted after a diffuse or glossy bounce; 0 leaves the map out
     std::size_t most_paths{16'000'000};      ///< paths emitted at the most, whatever is still wanted
     std::size_t pilot_paths{8192};           ///< paths of the pilot that finds out how many are needed
+    photon_paths paths{};                    ///< of each map, where known from an earlier pass; 0: the pilot finds out
     std::uint32_t most_bounces{0};           ///< depth cap, 0 for none: roulette ends paths without bias
     std::uint64_t seed{0};                   ///< another seed, another picture
     std::uint64_t pass{0};                   ///< of a progressive rendering

@@ -67,10 +67,15 @@ private:
             }
         }
         if (wanted_ == kinds{}) { return; }
-        const kinds found = pilot();
+        const kinds given{options_.paths.direct, options_.paths.caustic, options_.paths.indirect};
+        const kinds found = given == kinds{} ? pilot() : kinds{};
         const std::size_t try_hard = 32 * options_.pilot_paths;
         for (std::size_t kind = 0; kind < 3; ++kind) {
             if (wanted_[kind] == 0) { continue; }
+            if (given != kinds{}) {
+                paths_[kind] = given[kind];
+                continue;
+            }
             const double per_photon = static_cast<double>(options_.pilot_paths) / static_cast<double>(found[kind]);
             const double needed = std::ceil(static_cast<double>(wanted_[kind]) * per_photon);
             const auto most = static_cast<double>(options_.most_paths);

@@ -117,42 +117,70 @@ private:
     template <typename Accept, typename Weigh>
     [[nodiscard]] density_estimate<S, T> sum(const vec3<T>& point, const density_options& options, Accept&& accept,
                                              Weigh&& weigh) const {
-        if (empty() || options.count == 0) { return {}; }
+        if (empty()) { return {}; }
+        return with_kernel(options.kernel, [&](auto kernel) {
+            return options.count == 0 ? within(point, options, kernel, accept, weigh)
+                                      : nearest(point, options, kernel, accept, weigh);
+        });
+    }
+
+    template <typename Kernel, typename Accept, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> nearest(const vec3<T>& point, const density_options& options,
+                                                 const Kernel& kernel, Accept& accept, Weigh& weigh) const {
         // Scratch only: what it holds never shows in a result.
         static thread_local kd_scratch<T> scratch;
         const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(options.count);
         const auto found = tree_.nearest(point, options.count, scratch, {.radius2 = square(reach)}, accept);
-        const T radius2 = std::max(found.radius2, square(least_radius_));
-        return with_kernel(options.kernel, [&](auto kernel) { return weighted(found, radius2, kernel, weigh); });
+        const T radius2 = found.radius2 * square(static_cast<T>(options.shrink));
+        density_sum<Kernel> sum{kernel, std::max(radius2, square(least_radius_))};
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            sum.add(found.distances2[i], photons_[found.slots[i]], weigh);
+        }
+        return sum.result();
     }
 
-    template <typename Kernel, typename Weigh>
-    [[nodiscard]] density_estimate<S, T> weighted(const kd_neighbours<T>& found, T radius2, const Kernel& kernel,
-                                                  Weigh& weigh) const {
+    template <typename Kernel, typename Accept, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> within(const vec3<T>& point, const density_options& options,
+                                                const Kernel& kernel, Accept& accept, Weigh& weigh) const {
+        const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(50);
+        density_sum<Kernel> sum{kernel, std::max(square(reach), square(least_radius_))};
+        tree_.within(point, sum.radius2, [&](kd_slot i, T distance2) {
+            if (accept(i)) { sum.add(distance2, photons_[i], weigh); }
+        });
+        return sum.result();
+    }
+
+    /// Adds photons up, once over the whole disc and once over half its radius.
+    template <typename Kernel>
+    struct density_sum {
         using B = band_of<S>;
+        const Kernel& kernel;
+        T radius2;
         S wide{};
         S narrow{};
         B noise2{0};
-        density_estimate<S, T> result;
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            const T rho2 = found.distances2[i] / radius2;
+        std::uint32_t count{0};
+
+        template <typename Weigh>
+        void add(T distance2, const photon<S>& p, Weigh& weigh) {
+            const T rho2 = distance2 / radius2;
             // The k-th lies on the rim and does not count: that is the unbiased rule.
-            if (!(rho2 < 1)) { continue; }
-            const S flux = weigh(photons_[found.slots[i]]);
+            if (!(rho2 < 1)) { return; }
+            const S flux = weigh(p);
             const S share = flux * B(kernel(rho2));
             wide = wide + share;
             noise2 += square(max_component(share));
             if (rho2 < T(0.25)) { narrow = narrow + flux * B(4 * kernel(4 * rho2)); }
-            ++result.count;
+            ++count;
         }
-        const B scale = B(1 / radius2);
-        result.value = wide * scale;
-        result.radius = std::sqrt(radius2);
-        const S apart = wide + narrow * B(-1);
-        const B bias = std::max(max_component(apart), max_component(S(apart * B(-1))));
-        result.error = (bias + 2 * std::sqrt(noise2)) * scale;
-        return result;
-    }
+
+        [[nodiscard]] density_estimate<S, T> result() const {
+            const B scale = B(1 / radius2);
+            const S apart = wide + narrow * B(-1);
+            const B bias = std::max(max_component(apart), max_component(S(apart * B(-1))));
+            return {{wide * scale, (bias + 2 * std::sqrt(noise2)) * scale}, count, std::sqrt(radius2)};
+        }
+    };
 
     kd_tree<T> tree_{};
     std::vector<photon<S>> photons_{};

@@ -1,0 +1,118 @@
+// A picture that takes samples: as many more as one likes, the same for any number of threads.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <aglow/concepts/light.hpp>
+#include <aglow/core/parallel.hpp>
+#include <aglow/core/sobol.hpp>
+#include <aglow/estimators/estimate.hpp>
+
+namespace aglow {
+
+/// How a film is exposed.
+struct film_options {
+    std::uint32_t samples{16};  ///< samples per pixel to add; sets of a power of two are spread best
+    std::uint64_t seed{0};
+    std::uint64_t pass{0};
+    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
+};
+
+/// Pixels of mean radiance over a box of one pixel, row 0 on top. Samples without a finite value are left out and
+/// counted. One thread at a time may expose it.
+template <Spectrum S>
+class film {
+public:
+    using B = band_of<S>;
+
+    film(std::size_t width, std::size_t height) : width_{width}, height_{height}, pixels_(width * height) {}
+
+    [[nodiscard]] std::size_t width() const { return width_; }
+    [[nodiscard]] std::size_t height() const { return height_; }
+
+    /// Samples that a pixel has taken; the next exposure goes on from there.
+    [[nodiscard]] std::uint32_t samples() const { return samples_; }
+    /// Samples left out because their value was NaN, infinite or negative.
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
+
+    /// Mean radiance of a pixel, W/(m² sr).
+    [[nodiscard]] S radiance(std::size_t x, std::size_t y) const {
+        const pixel& p = pixels_[y * width_ + x];
+        return p.count == 0 ? S{} : S(p.sum * (1 / static_cast<B>(p.count)));
+    }
+
+    /// A guess of a pixel's error: the mean of what the integrator guessed, and the standard error of its samples.
+    [[nodiscard]] B error(std::size_t x, std::size_t y) const {
+        const pixel& p = pixels_[y * width_ + x];
+        if (p.count == 0) { return B(0); }
+        const B n = static_cast<B>(p.count);
+        const B mean = p.level / n;
+        const B variance = std::max(B(0), p.level2 / n - mean * mean) / n;
+        return p.guess / n + std::sqrt(variance);
+    }
+
+    /// Adds samples: `eye(film_point)` is the ray through a point in pixels, `integrator(ray, numbers)` an `estimate`
+    /// of what comes back along it.
+    template <typename Eye, typename Integrator, Executor Run = in_sequence>
+    void expose(const Eye& eye, const Integrator& integrator, const film_options& options = {}, const Run& run = {}) {
+        std::atomic<std::size_t> rows{0};
+        std::atomic<std::uint64_t> dropped{0};
+        std::atomic<bool> stop{false};
+        run(height_, [&](std::size_t y) {
+            if (stop) { return; }
+            for (std::size_t x = 0; x < width_; ++x) { dropped += take(x, y, eye, integrator, options); }
+            const double share = static_cast<double>(++rows) / static_cast<double>(height_);
+            if (options.progress && !options.progress(share)) { stop = true; }
+        });
+        samples_ += options.samples;
+        dropped_ += dropped;
+    }
+
+private:
+    struct pixel {
+        S sum{};
+        B guess{0};
+        B level{0};
+        B level2{0};
+        std::uint32_t count{0};
+    };
+
+    template <typename Eye, typename Integrator>
+    std::uint64_t take(std::size_t x, std::size_t y, const Eye& eye, const Integrator& integrator,
+                       const film_options& options) {
+        using T = typename Integrator::scalar;
+        pixel& p = pixels_[y * width_ + x];
+        const std::uint32_t before = p.count;
+        for (std::uint32_t i = samples_; i < samples_ + options.samples; ++i) {
+            const sobol_numbers<T> numbers{{options.seed, options.pass, y * width_ + x}, i};
+            const vec2<T> u = numbers.at(0, purpose::camera).next_2d();
+            const estimate<S> seen =
+                integrator(eye(vec2<T>{static_cast<T>(x) + u.x, static_cast<T>(y) + u.y}), numbers);
+            if (is_radiance(seen.value)) { add(p, seen); }
+        }
+        return options.samples - (p.count - before);
+    }
+
+    static void add(pixel& p, const estimate<S>& seen) {
+        const B level = max_component(seen.value);
+        p.sum = p.sum + seen.value;
+        p.guess += is_finite(seen.error) ? seen.error : B(0);
+        p.level += level;
+        p.level2 += level * level;
+        ++p.count;
+    }
+
+    std::size_t width_;
+    std::size_t height_;
+    std::vector<pixel> pixels_;
+    std::uint32_t samples_{0};
+    std::uint64_t dropped_{0};
+};
+
+}  // namespace aglow
