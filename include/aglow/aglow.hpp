@@ -13,6 +13,10 @@
 #include <aglow/core/ray.hpp>
 #include <aglow/core/roulette.hpp>
 #include <aglow/core/simd.hpp>
+#include <aglow/core/simd_avx2.hpp>
+#include <aglow/core/simd_avx512.hpp>
+#include <aglow/core/simd_sse.hpp>
+#include <aglow/core/simd_tables.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/core/vec.hpp>
 #include <aglow/core/version.hpp>
