@@ -61,6 +61,7 @@
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/photon_options.hpp>
 #include <aglow/algorithms/photon_source.hpp>
 #include <aglow/algorithms/photon_walk.hpp>

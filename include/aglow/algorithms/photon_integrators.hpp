@@ -1,0 +1,142 @@
+// Ready integrators on photon maps: looked at directly, and seen through a final gather.
+//
+// Jensen 1996. Direct visualisation is quick and blotchy; the gather is smooth and costs its rays at every point.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include <aglow/algorithms/final_gather.hpp>
+#include <aglow/algorithms/layered_integrator.hpp>
+#include <aglow/algorithms/photon_source.hpp>
+#include <aglow/algorithms/precompute_irradiance.hpp>
+#include <aglow/algorithms/trace_photons.hpp>
+
+namespace aglow {
+
+/// What a photon-mapped picture is made of.
+struct photon_mapping_options {
+    photon_options photons{.caustic = 200'000, .indirect = 200'000};
+    density_options density{};
+    bool direct_from_map{false};  ///< direct light from the direct map (ask for its photons) instead of shadow rays
+    path_options paths{};         ///< through mirrors and gloss
+};
+
+/// An integrator: direct light by shadow rays or from its map, caustics and indirect light straight from theirs. Traces
+/// its photons when made. Keeps references to scene and lights; `const`, safe from many threads.
+template <Scene World, Illuminator Lights>
+    requires Emitter<Lights>
+class photon_mapping {
+public:
+    using spectrum = spectrum_of<World>;
+    using scalar = scalar_of<World>;
+
+    template <Executor Run = in_sequence>
+    photon_mapping(const World& scene, const Lights& lights, const photon_mapping_options& options = {},
+                   const Run& run = {})
+        : scene_{scene},
+          lights_{lights},
+          options_{options},
+          maps_{trace_photons(scene, lights, options.photons, run)} {}
+
+    /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
+    template <Numbers N>
+    [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
+        const map_layer<spectrum, scalar> caustic{maps_.caustic, options_.density};
+        const map_layer<spectrum, scalar> indirect{maps_.indirect, options_.density};
+        if (options_.direct_from_map) {
+            const map_layer<spectrum, scalar> direct{maps_.direct, options_.density};
+            return trace(eye, numbers, layer_sum{direct, caustic, indirect});
+        }
+        return trace(eye, numbers, layer_sum{direct_layer{scene_, lights_}, caustic, indirect});
+    }
+
+    [[nodiscard]] const photon_maps<spectrum, scalar>& maps() const { return maps_; }
+
+private:
+    template <typename N, typename Layers>
+    [[nodiscard]] estimate<spectrum> trace(const ray<scalar>& eye, const N& numbers, Layers layers) const {
+        return layered_integrator<World, Lights, Layers>{scene_, lights_, layers, options_.paths}(eye, numbers);
+    }
+
+    const World& scene_;
+    const Lights& lights_;
+    photon_mapping_options options_;
+    photon_maps<spectrum, scalar> maps_;
+};
+
+/// What a final-gathered picture is made of.
+struct final_gathering_options {
+    photon_options photons{.direct = 20'000, .caustic = 200'000, .indirect = 100'000};
+    density_options density{};  ///< of the caustic map as it is seen
+    irradiance_options irradiance{};
+    photon_source_options source{};
+    std::uint32_t rays{64};  ///< gather rays per shading point
+    path_options paths{};    ///< through mirrors and gloss
+};
+
+/// Photon maps and the irradiance that gather rays read: what every gathering integrator stands on. Keeps references to
+/// scene and lights.
+template <Scene World, Illuminator Lights>
+    requires Emitter<Lights>
+class gather_base {
+public:
+    using spectrum = spectrum_of<World>;
+    using scalar = scalar_of<World>;
+
+    template <Executor Run = in_sequence>
+    gather_base(const World& scene, const Lights& lights, const photon_options& photons,
+                const irradiance_options& irradiance, const Run& run = {})
+        : maps_{trace_photons(scene, lights, photons, run)},
+          points_{precompute_irradiance(scene, lights, maps_, irradiance, run)} {}
+
+    [[nodiscard]] const photon_maps<spectrum, scalar>& maps() const { return maps_; }
+    [[nodiscard]] const irradiance_points<spectrum, scalar>& points() const { return points_; }
+
+    /// What gather rays may take for themselves: light over mirrors only where no caustic map shows it.
+    [[nodiscard]] emission_rule caustics() const {
+        return maps_.caustic.paths > 0 ? emission_rule::no_caustics : emission_rule::indirect;
+    }
+
+private:
+    photon_maps<spectrum, scalar> maps_;
+    irradiance_points<spectrum, scalar> points_;
+};
+
+/// An integrator: direct light by shadow rays, caustics from their map, indirect light by a final gather at every
+/// shading point. Traces its photons when made. `const`, safe from many threads.
+template <Scene World, Illuminator Lights>
+    requires Emitter<Lights>
+class final_gathering {
+public:
+    using spectrum = spectrum_of<World>;
+    using scalar = scalar_of<World>;
+
+    template <Executor Run = in_sequence>
+    final_gathering(const World& scene, const Lights& lights, const final_gathering_options& options = {},
+                    const Run& run = {})
+        : scene_{scene},
+          lights_{lights},
+          options_{options},
+          base_{scene, lights, options.photons, options.irradiance, run} {}
+
+    /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
+    template <Numbers N>
+    [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
+        const photon_source<World, Lights> source{scene_, lights_, base_.points(), options_.source};
+        const layer_sum layers{direct_layer{scene_, lights_},
+                               map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
+                               gather_layer{source, {.rays = options_.rays, .caustics = base_.caustics()}}};
+        return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
+    }
+
+    [[nodiscard]] const photon_maps<spectrum, scalar>& maps() const { return base_.maps(); }
+
+private:
+    const World& scene_;
+    const Lights& lights_;
+    final_gathering_options options_;
+    gather_base<World, Lights> base_;
+};
+
+}  // namespace aglow
