@@ -57,6 +57,7 @@
 #include <aglow/algorithms/energy_ledger.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/final_gather.hpp>
+#include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_trace.hpp>

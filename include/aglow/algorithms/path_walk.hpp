@@ -9,6 +9,7 @@
 #include <limits>
 
 #include <aglow/algorithms/direct_light.hpp>
+#include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/photon_walk.hpp>
 #include <aglow/core/roulette.hpp>
 #include <aglow/estimators/estimate.hpp>
@@ -26,14 +27,6 @@ enum class emission_rule : std::uint8_t {
     all,         ///< a ray from the eye: everything it meets
     indirect,    ///< a gather ray: the asker looked for lights himself, but not through mirrors
     no_caustics  ///< a gather ray beside a caustic map: not through mirrors either
-};
-
-/// What comes along a ray, and from how far; infinite where the ray left the scene.
-template <Spectrum S, std::floating_point T>
-struct incoming_light {
-    S radiance{};
-    T distance{std::numeric_limits<T>::infinity()};
-    band_of<S> error{};
 };
 
 /// The end of no path: every path goes on by itself.

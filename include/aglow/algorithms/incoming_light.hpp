@@ -1,0 +1,19 @@
+// What a gather ray brings home.
+#pragma once
+
+#include <concepts>
+#include <limits>
+
+#include <aglow/concepts/spectrum.hpp>
+
+namespace aglow {
+
+/// Radiance that comes along a ray, how far away it comes from (infinite where nothing was met), and a guess of its error.
+template <Spectrum S, std::floating_point T>
+struct incoming_light {
+    S radiance{};
+    T distance{std::numeric_limits<T>::infinity()};
+    band_of<S> error{};
+};
+
+}  // namespace aglow
