@@ -53,6 +53,8 @@
 #include <aglow/estimators/photon_map.hpp>
 
 // algorithms: light on its way
+#include <aglow/algorithms/cache_candidates.hpp>
+#include <aglow/algorithms/cache_integrators.hpp>
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/energy_ledger.hpp>
 #include <aglow/algorithms/film.hpp>

@@ -1,0 +1,81 @@
+// Places where a picture will ask for irradiance: what a fill pass works on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <aglow/algorithms/fill_cache.hpp>
+#include <aglow/algorithms/layers.hpp>
+#include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/parallel.hpp>
+
+namespace aglow {
+
+/// How a picture is looked over.
+struct view_options {
+    std::size_t width{256};
+    std::size_t height{256};
+    std::uint32_t looks{1};         ///< rays per pixel; more find more of what mirrors and glass show
+    std::uint32_t most_bounces{8};  ///< surfaces followed through mirrors and gloss; the picture itself goes on further
+    std::uint64_t seed{0};
+};
+
+namespace detail {
+
+/// Adds what one ray from the eye finds on diffuse surfaces, both hemispheres where something transmits.
+template <Scene World, Numbers N>
+void look(const World& scene, const ray<scalar_of<World>>& eye, scalar_of<World> footprint_share, const N& numbers,
+          const view_options& options, std::uint64_t key, std::vector<cache_candidate<scalar_of<World>>>& found) {
+    using T = scalar_of<World>;
+    walk_state<World> at{.path = eye};
+    T travelled = 0;
+    for (std::uint32_t bounce = 1; bounce <= options.most_bounces; ++bounce) {
+        const auto hit = scene.intersect(at.path);
+        if (!hit || !is_sound(*hit, at.path)) { return; }
+        const vec3<T> position = hit->position;
+        const vec3<T> wo = -at.path.direction;
+        const T error = error_of(*hit, at.path.origin);
+        travelled += glm::distance(position, at.path.origin);
+        const vec3<T> near = side_of(*hit, wo);
+        const auto add = [&](const vec3<T>& side) {
+            found.push_back({{position, side, error}, travelled * footprint_share, mix(key, found.size())});
+        };
+        if (any(hit->lobes(), lobe_set::diffuse_reflection)) { add(near); }
+        if constexpr (any(static_lobes<World>, lobe_set::diffuse_transmission)) {
+            if (any(hit->lobes(), lobe_set::diffuse_transmission)) { add(-near); }
+        }
+        const lobe_set on = hit->lobes() & ~lobe_set::diffuse;
+        if (!scatter(at, *hit, wo, error, numbers, bounce, on, path_options{})) { return; }
+    }
+}
+
+}  // namespace detail
+
+/// The diffuse places that the rays `eye(film_point)` of a picture meet, row by row, each side of a surface that lets
+/// light through a candidate of its own. The same for any executor.
+template <Scene World, typename Eye, Executor Run = in_sequence>
+[[nodiscard]] auto cache_candidates(const World& scene, const Eye& eye, const view_options& options,
+                                    const Run& run = {}) {
+    using T = scalar_of<World>;
+    using candidates = std::vector<cache_candidate<T>>;
+    std::vector<candidates> rows(options.height);
+    run(options.height, [&](std::size_t y) {
+        for (std::size_t x = 0; x < options.width; ++x) {
+            const std::uint64_t pixel = y * options.width + x;
+            for (std::uint32_t i = 0; i < options.looks; ++i) {
+                const sobol_numbers<T> numbers{{options.seed, ~std::uint64_t{0}, pixel}, i};
+                const vec2<T> film{static_cast<T>(x) + T(0.5), static_cast<T>(y) + T(0.5)};
+                const ray<T> here = eye(film);
+                const T share = glm::length(eye(film + vec2<T>{1, 0}).direction - here.direction);
+                detail::look(scene, here, share, numbers, options, mix(options.seed, pixel * options.looks + i),
+                             rows[y]);
+            }
+        }
+    });
+    candidates all;
+    for (candidates& row : rows) { all.insert(all.end(), row.begin(), row.end()); }
+    return all;
+}
+
+}  // namespace aglow
