@@ -44,14 +44,10 @@ public:
         // The z of the four planes' normals through the eye and an edge; the other parts drop out of the products.
         b0_ = -y0_ / std::sqrt(z2 + y0_ * y0_);
         b1_ = y1_ / std::sqrt(z2 + y1_ * y1_);
-        const T n1 = x1_ / std::sqrt(z2 + x1_ * x1_);
         const T n3 = -x0_ / std::sqrt(z2 + x0_ * x0_);
-        const T g2 = std::acos(std::clamp(-b1_ * n3, T(-1), T(1)));
-        const T g3 = std::acos(std::clamp(-n3 * b0_, T(-1), T(1)));
-        const T g0 = std::acos(std::clamp(-b0_ * n1, T(-1), T(1)));
-        const T g1 = std::acos(std::clamp(-n1 * b1_, T(-1), T(1)));
-        start_ = 2 * aglow::pi<T> - g2 - g3;
-        solid_angle_ = std::max(T(0), g0 + g1 - start_);
+        start_ = std::acos(std::clamp(b1_ * n3, T(-1), T(1))) + std::acos(std::clamp(n3 * b0_, T(-1), T(1)));
+        // The four angles' sum less 2 pi, in a form that keeps its digits where the rectangle is far.
+        solid_angle_ = std::max(T(0), corner(x1_, y1_) - corner(x0_, y1_) - corner(x1_, y0_) + corner(x0_, y0_));
     }
 
     [[nodiscard]] T solid_angle() const { return solid_angle_; }
@@ -72,6 +68,9 @@ public:
     }
 
 private:
+    /// Solid angle of the rectangle from the foot of the perpendicular to (x, y), with the sign of x y.
+    [[nodiscard]] T corner(T x, T y) const { return std::atan2(x * y, -z_ * std::sqrt(x * x + y * y + z_ * z_)); }
+
     const rectangle<T>& r_;
     T x0_, x1_, y0_, y1_, z_, b0_, b1_, start_, solid_angle_;
 };

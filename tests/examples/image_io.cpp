@@ -1,0 +1,91 @@
+#include "common/image_io.hpp"
+
+#include <fstream>
+#include <limits>
+
+#include "support/catch.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this test's own, gone afterwards.
+struct scratch {
+    fs::path folder{fs::temp_directory_path() /
+                    ("aglow_image_io_" + std::to_string(std::hash<std::string>{}(fs::current_path().string())))};
+    scratch() { fs::create_directories(folder); }
+    ~scratch() { fs::remove_all(folder); }
+};
+
+host::picture gradient(float scale) {
+    host::picture p{7, 5};
+    for (std::size_t i = 0; i < p.pixels.size(); ++i) {
+        const float x = static_cast<float>(i) * scale;
+        p.pixels[i] = {x, -x / 3, x * 1e20f};
+    }
+    p.at(2, 1) = {std::numeric_limits<float>::denorm_min(), std::numeric_limits<float>::infinity(), 0.1f};
+    return p;
+}
+
+}  // namespace
+
+TEST_CASE("image_io: EXR gives back every layer bit for bit") {
+    const scratch dir;
+    const auto file = dir.folder / "layers.exr";
+    host::write_exr(file, {{"", gradient(1)}, {"direct", gradient(0.1f)}, {"caustic", gradient(-2)}});
+    CHECK(host::read_exr(file).pixels == gradient(1).pixels);
+    CHECK(host::read_exr(file, "direct").pixels == gradient(0.1f).pixels);
+    CHECK(host::read_exr(file, "caustic").pixels == gradient(-2).pixels);
+    CHECK(host::read_exr(file).width == 7);
+    CHECK_THROWS_AS(host::read_exr(file, "glow"), std::runtime_error);
+}
+
+TEST_CASE("image_io: what cannot be written leaves the older file whole and no part behind") {
+    const scratch dir;
+    const auto file = dir.folder / "good.exr";
+    host::write_exr(file, {{"", gradient(1)}});
+    // Two layers of different sizes are refused.
+    CHECK_THROWS_AS(host::write_exr(file, {{"", gradient(3)}, {"x", host::picture{3, 3}}}), std::runtime_error);
+    // A folder stands where the part would be written.
+    fs::create_directories(dir.folder / "good.exr.part" / "in the way");
+    CHECK_THROWS_AS(host::write_exr(file, {{"", gradient(3)}}), std::runtime_error);
+    CHECK(host::read_exr(file).pixels == gradient(1).pixels);
+    const auto there = dir.folder / "missing" / "x.exr";
+    CHECK_THROWS_WITH(host::write_exr(there, {{"", gradient(1)}}), Catch::Contains(there.string()));
+}
+
+TEST_CASE("image_io: a file that is no picture is refused by name") {
+    const scratch dir;
+    const auto file = dir.folder / "text.exr";
+    std::ofstream{file} << "not a picture";
+    CHECK_THROWS_WITH(host::read_exr(file), Catch::Contains(file.string()));
+    CHECK_THROWS_AS(host::read_exr(dir.folder / "nothing.exr"), std::runtime_error);
+}
+
+TEST_CASE("image_io: the references have the means that their description says") {
+    const auto mean = [](const host::picture& p) {
+        aglow::vec3<double> sum{0};
+        for (const auto& pixel : p.pixels) { sum += aglow::vec3<double>(pixel); }
+        return sum / static_cast<double>(p.pixels.size());
+    };
+    const fs::path folder = AGLOW_REFERENCES;
+    const auto diffuse = mean(host::read_exr(folder / "cornell-diffuse.exr"));
+    CHECK(diffuse.x == Approx(0.196578).epsilon(1e-5));
+    CHECK(diffuse.z == Approx(0.036435).epsilon(1e-4));
+    const auto glass = mean(host::read_exr(folder / "cornell-glass.exr"));
+    CHECK(glass.y == Approx(0.141383).epsilon(1e-5));
+}
+
+TEST_CASE("image_io: PNG is written where the build has it, else refused with words") {
+    const scratch dir;
+    const auto file = dir.folder / "view.png";
+    if (!host::has_png()) {
+        CHECK_THROWS_AS(host::write_png(file, gradient(1)), std::runtime_error);
+        return;
+    }
+    host::write_png(file, gradient(0.1f));
+    std::ifstream in{file, std::ios::binary};
+    std::string magic(8, '\0');
+    in.read(magic.data(), 8);
+    CHECK(magic == "\x89PNG\r\n\x1a\n");
+}
