@@ -27,6 +27,17 @@ host::picture gradient(float scale) {
     return p;
 }
 
+/// What `act` complains of; empty where it does not.
+template <typename Act>
+std::string complaint(Act&& act) {
+    try {
+        act();
+    } catch (const std::runtime_error& e) { return e.what(); }
+    return {};
+}
+
+bool names(const std::string& text, const fs::path& file) { return text.find(file.string()) != std::string::npos; }
+
 }  // namespace
 
 TEST_CASE("image_io: EXR gives back every layer bit for bit") {
@@ -51,14 +62,14 @@ TEST_CASE("image_io: what cannot be written leaves the older file whole and no p
     CHECK_THROWS_AS(host::write_exr(file, {{"", gradient(3)}}), std::runtime_error);
     CHECK(host::read_exr(file).pixels == gradient(1).pixels);
     const auto there = dir.folder / "missing" / "x.exr";
-    CHECK_THROWS_WITH(host::write_exr(there, {{"", gradient(1)}}), Catch::Contains(there.string()));
+    CHECK(names(complaint([&] { host::write_exr(there, {{"", gradient(1)}}); }), there));
 }
 
 TEST_CASE("image_io: a file that is no picture is refused by name") {
     const scratch dir;
     const auto file = dir.folder / "text.exr";
     std::ofstream{file} << "not a picture";
-    CHECK_THROWS_WITH(host::read_exr(file), Catch::Contains(file.string()));
+    CHECK(names(complaint([&] { static_cast<void>(host::read_exr(file)); }), file));
     CHECK_THROWS_AS(host::read_exr(dir.folder / "nothing.exr"), std::runtime_error);
 }
 
