@@ -41,24 +41,32 @@
 #include <aglow/containers/stable_array.hpp>
 
 // estimators: light from what was stored
+#include <aglow/estimators/compact_gradients.hpp>
 #include <aglow/estimators/density.hpp>
 #include <aglow/estimators/edge_derivatives.hpp>
 #include <aglow/estimators/estimate.hpp>
 #include <aglow/estimators/hemisphere.hpp>
+#include <aglow/estimators/irradiance_cache.hpp>
+#include <aglow/estimators/irradiance_estimate.hpp>
 #include <aglow/estimators/irradiance_gradients.hpp>
 #include <aglow/estimators/irradiance_hessian.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
+#include <aglow/estimators/irradiance_record.hpp>
 #include <aglow/estimators/kernel.hpp>
 #include <aglow/estimators/photon.hpp>
 #include <aglow/estimators/photon_map.hpp>
+#include <aglow/estimators/record_blend.hpp>
+#include <aglow/estimators/record_reach.hpp>
 
 // algorithms: light on its way
 #include <aglow/algorithms/cache_candidates.hpp>
 #include <aglow/algorithms/cache_integrators.hpp>
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/energy_ledger.hpp>
+#include <aglow/algorithms/fill_cache.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/final_gather.hpp>
+#include <aglow/algorithms/gather.hpp>
 #include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>

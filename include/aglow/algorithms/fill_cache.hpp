@@ -1,0 +1,256 @@
+// The pass before the picture: records wherever the picture will ask for them, and nowhere twice.
+//
+// Candidates are places that the picture will need. Rounds go from coarse to fine spacing: all candidates are looked up
+// in parallel, those not covered are thinned to the round's spacing in their fixed order, gathered in parallel, and
+// inserted in order. A round leaves uncovered only what needs a finer spacing, so few records overlap more than they
+// must, and the records are the same to the last bit for any number of threads.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <aglow/algorithms/gather.hpp>
+#include <aglow/containers/octree.hpp>
+#include <aglow/core/parallel.hpp>
+#include <aglow/core/random.hpp>
+#include <aglow/estimators/irradiance_cache.hpp>
+
+namespace aglow {
+
+/// A place that may need a record. The other side of a surface that lets light through is a candidate of its own, with
+/// the normal turned round.
+template <std::floating_point T>
+struct cache_candidate {
+    gather_point<T> place{};
+    T footprint{};        ///< diameter of a pixel there, 0 where none is meant
+    std::uint64_t key{};  ///< names the candidate: what its random numbers are drawn from
+};
+
+/// How a cache is filled.
+struct fill_cache_options {
+    /// Rays of each hemisphere, about.
+    std::uint32_t rays{400};
+
+    /// Names the run of random numbers.
+    std::uint64_t seed{0};
+
+    /// The sum of weights that a candidate wants; above the cache's own `minimum_weight`, so that the picture finds
+    /// enough between candidates too.
+    double minimum_weight{0.1};
+
+    /// The spacing of each round relative to the one before, in (0, 1).
+    double refinement{0.7};
+
+    /// The most records in the cache; the coarsest come first. 0: no limit.
+    std::size_t maximum_records{0};
+};
+
+/// How far a fill pass is: told after each batch of gathers.
+struct fill_progress {
+    std::size_t records;     ///< inserted so far
+    std::size_t candidates;  ///< in all
+    std::size_t uncovered;   ///< not covered when the present round began
+};
+
+/// What a fill pass did.
+struct fill_result {
+    std::size_t records{0};     ///< inserted
+    std::size_t refused{0};     ///< gathered but refused by the cache
+    std::uint64_t rays{0};      ///< shot
+    std::uint64_t rejected{0};  ///< of these, how many brought no number
+    std::size_t rounds{0};
+    std::size_t uncovered{0};  ///< candidates without cover in the end
+    bool cancelled{false};
+};
+
+namespace detail {
+
+/// Fills one cache; see `fill_cache`.
+template <typename Cache, typename Incoming, typename E>
+class cache_filler {
+public:
+    using T = typename Cache::scalar;
+    using S = typename Cache::spectrum;
+    using candidate = cache_candidate<T>;
+
+    cache_filler(Cache& cache, std::span<const candidate> candidates, const Incoming& incoming,
+                 const fill_cache_options& options, const E& run)
+        : cache_{cache},
+          candidates_{candidates},
+          incoming_{incoming},
+          options_{options},
+          run_{run},
+          estimator_{hemisphere_of(options.rays), parts()} {}
+
+    template <typename Progress>
+    fill_result fill(Progress&& progress) {
+        pending_.resize(candidates_.size());
+        std::iota(pending_.begin(), pending_.end(), std::size_t{0});
+        const auto& reach = cache_.options().reach;
+        const T finest = static_cast<T>(reach.minimum_radius / 2) * cache_.scene_radius();
+        T spacing = static_cast<T>(reach.maximum_radius) * cache_.scene_radius();
+        for (bool last = false; !last && !result_.cancelled; spacing *= static_cast<T>(options_.refinement)) {
+            last = spacing <= finest;
+            drop_covered();
+            if (pending_.empty() || full()) { break; }
+            ++result_.rounds;
+            gather(thinned(std::max(spacing, finest)), progress);
+        }
+        drop_covered();
+        result_.uncovered = pending_.size();
+        return result_;
+    }
+
+private:
+    static constexpr std::size_t batch = 256;
+
+    [[nodiscard]] estimate_parts parts() const {
+        constexpr record_features f = Cache::record::features;
+        const error_metric metric = cache_.options().reach.metric;
+        return {.gradients = f.gradients || metric != error_metric::nearest_distance,
+                .curvature = metric == error_metric::hessian,
+                .incident = f.incident};
+    }
+
+    [[nodiscard]] bool full() const {
+        return options_.maximum_records > 0 && cache_.size() >= options_.maximum_records;
+    }
+
+    /// Looks up all that is pending and keeps, in order, what is not covered.
+    void drop_covered() {
+        std::vector<char> covered(pending_.size());
+        const T wanted = static_cast<T>(options_.minimum_weight);
+        for_each_block(run_, pending_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const gather_point<T>& p = candidates_[pending_[i]].place;
+                covered[i] = cache_.lookup(p.position, p.normal).weight > wanted;
+            }
+        });
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < pending_.size(); ++i) {
+            if (!covered[i]) { pending_[kept++] = pending_[i]; }
+        }
+        pending_.resize(kept);
+    }
+
+    /// Takes from the pending ones, in order, each that lies at least `spacing` from those taken before it, unless it
+    /// faces another way; the others stay pending.
+    [[nodiscard]] std::vector<std::size_t> thinned(T spacing) {
+        std::vector<std::size_t> taken;
+        std::vector<std::size_t> rest;
+        octree<std::size_t, T> near;
+        for (const std::size_t i : pending_) {
+            const gather_point<T>& p = candidates_[i].place;
+            bool free = true;
+            near.visit_covering(p.position, [&](std::size_t other) {
+                free = !alike(candidates_[other].place, p, spacing);
+                return free;
+            });
+            if (free && !full_with(taken.size())) {
+                // What no tree can hold is gathered and refused at the door of the cache.
+                (void)near.insert(i, p.position, spacing);
+                taken.push_back(i);
+            } else {
+                rest.push_back(i);
+            }
+        }
+        pending_ = std::move(rest);
+        return taken;
+    }
+
+    [[nodiscard]] bool full_with(std::size_t more) const {
+        return options_.maximum_records > 0 && cache_.size() + more >= options_.maximum_records;
+    }
+
+    /// Whether a record at `a` with that reach would pass the cache's tests of normal and plane at `b`.
+    [[nodiscard]] bool alike(const gather_point<T>& a, const gather_point<T>& b, T reach) const {
+        const record_lookup_options& lookup = cache_.options().lookup;
+        const T turn = length2(a.normal - b.normal) / 2;
+        const T height = std::abs(glm::dot(b.position - a.position, a.normal + b.normal)) / 2;
+        return turn < static_cast<T>(2 * square(std::sin(lookup.normal_limit / 2))) &&
+               height <= static_cast<T>(lookup.plane_tolerance) * reach;
+    }
+
+    template <typename Progress>
+    void gather(const std::vector<std::size_t>& chosen, Progress& progress) {
+        const std::size_t uncovered = chosen.size() + pending_.size();
+        for (std::size_t first = 0; first < chosen.size() && !result_.cancelled; first += batch) {
+            const std::size_t count = std::min(batch, chosen.size() - first);
+            gather_batch(std::span{chosen}.subspan(first, count));
+            const fill_progress now{result_.records, candidates_.size(), uncovered};
+            result_.cancelled = !progress(now);
+        }
+    }
+
+    void gather_batch(std::span<const std::size_t> chosen) {
+        std::vector<irradiance_estimate<S, T>> estimates(chosen.size());
+        for_each_block(run_, chosen.size(), 4, [&](std::size_t, std::size_t first, std::size_t last) {
+            gather_workspace<S, T> workspace;
+            for (std::size_t i = first; i < last; ++i) {
+                const candidate& c = candidates_[chosen[i]];
+                const random_numbers<T> numbers{{options_.seed, 0, c.key}};
+                estimates[i] = gather_irradiance(incoming_, c.place, numbers, estimator_, workspace);
+            }
+        });
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            const irradiance_estimate<S, T>& e = estimates[i];
+            const record_status status = cache_.insert(e, candidates_[chosen[i]].footprint);
+            ++(status == record_status::inserted ? result_.records : result_.refused);
+            result_.rays += e.rays;
+            result_.rejected += e.rejected;
+        }
+    }
+
+    Cache& cache_;
+    std::span<const candidate> candidates_;
+    const Incoming& incoming_;
+    const fill_cache_options& options_;
+    const E& run_;
+    irradiance_estimator<T> estimator_;
+    std::vector<std::size_t> pending_;
+    fill_result result_;
+};
+
+inline void check(const fill_cache_options& o) {
+    expect_setting(o.rays > 0, "rays", o.rays);
+    expect_setting(is_finite(o.minimum_weight) && o.minimum_weight >= 0, "minimum_weight", o.minimum_weight);
+    expect_setting(o.refinement > 0 && o.refinement <= 0.95, "refinement", o.refinement);
+}
+
+struct go_on {
+    bool operator()(const fill_progress&) const { return true; }
+};
+
+}  // namespace detail
+
+/// Adds records to `cache` until all `candidates` are covered. Candidates are considered in the given order; `incoming`
+/// answers gather rays (see `IncomingLight`). `progress(fill_progress)` may return false to stop early: what was
+/// gathered stays. Throws `std::invalid_argument` for options that make no sense.
+template <Spectrum S, std::floating_point T, record_features F, IncomingLight<T, random_numbers<T>> Incoming,
+          Executor E = in_sequence, std::predicate<const fill_progress&> Progress = detail::go_on>
+fill_result fill_cache(irradiance_cache<S, T, F>& cache,
+                       std::span<const cache_candidate<std::type_identity_t<T>>> candidates, const Incoming& incoming,
+                       const fill_cache_options& options = {}, const E& run = {}, Progress&& progress = {}) {
+    detail::check(options);
+    detail::cache_filler<irradiance_cache<S, T, F>, Incoming, E> filler{cache, candidates, incoming, options, run};
+    return filler.fill(progress);
+}
+
+/// Irradiance from the cache, or where it has no record from `fallback()`: a gather of its own (`gather_once`), whose
+/// numbers are the path's, so that the picture stays the same for any number of threads.
+template <typename Cache, typename T, typename Fallback>
+[[nodiscard]] typename Cache::spectrum irradiance_or(const Cache& cache, const vec3<T>& point, const vec3<T>& normal,
+                                                     Fallback&& fallback) {
+    const auto answer = cache.lookup(point, normal);
+    return answer ? answer.irradiance : typename Cache::spectrum(fallback());
+}
+
+}  // namespace aglow

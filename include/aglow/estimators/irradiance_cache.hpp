@@ -1,0 +1,296 @@
+// Irradiance remembered at few points and blended between them.
+//
+// Ward et al. 1988: indirect light changes slowly, so it is worked out where no record reaches and interpolated
+// elsewhere. Here with gradients (1992), neighbour clamping (Krivanek et al. 2006) and ellipses of equal error
+// (Schwarzhaupt et al. 2012). Knows no rays: whoever has irradiance hands it in.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <aglow/concepts/spectrum.hpp>
+#include <aglow/containers/octree.hpp>
+#include <aglow/core/bounds.hpp>
+#include <aglow/core/numbers.hpp>
+#include <aglow/core/parallel.hpp>
+#include <aglow/core/vec.hpp>
+#include <aglow/estimators/irradiance_estimate.hpp>
+#include <aglow/estimators/irradiance_record.hpp>
+#include <aglow/estimators/record_blend.hpp>
+#include <aglow/estimators/record_reach.hpp>
+
+namespace aglow {
+
+/// How records reach, are found and clamp each other.
+struct irradiance_cache_options {
+    record_reach_options reach{};
+    record_lookup_options lookup{};
+
+    /// A record reaches no farther than a neighbour's reach and the way to it, so what one of them saw near counts for
+    /// all around (Krivanek et al. 2006).
+    bool clamp_neighbours{true};
+};
+
+/// What became of an estimate handed to a cache.
+enum class record_status {
+    inserted,
+    /// Not a number somewhere, negative light, no unit normal, or more than half of the rays rejected.
+    bad_estimate,
+    /// The reach is too small or too large to be squared.
+    bad_reach
+};
+
+namespace detail {
+
+/// Throws `std::invalid_argument` that names the setting and its value.
+inline void expect_setting(bool good, const char* name, double value) {
+    if (!good) { throw std::invalid_argument("aglow: " + std::string{name} + " is " + std::to_string(value)); }
+}
+
+inline void check(const irradiance_cache_options& o) {
+    // Written so that NaN is refused, under -ffast-math too.
+    const auto positive = [](double x) { return is_finite(x) && x > 0; };
+    expect_setting(positive(o.reach.accuracy), "accuracy", o.reach.accuracy);
+    expect_setting(positive(o.reach.minimum_radius), "minimum_radius", o.reach.minimum_radius);
+    expect_setting(positive(o.reach.maximum_radius) && o.reach.maximum_radius >= o.reach.minimum_radius,
+                   "maximum_radius", o.reach.maximum_radius);
+    expect_setting(is_finite(o.reach.minimum_footprints) && o.reach.minimum_footprints >= 0, "minimum_footprints",
+                   o.reach.minimum_footprints);
+    expect_setting(positive(o.reach.geometric_limit), "geometric_limit", o.reach.geometric_limit);
+    expect_setting(is_finite(o.reach.maximum_ratio) && o.reach.maximum_ratio >= 1, "maximum_ratio",
+                   o.reach.maximum_ratio);
+    expect_setting(positive(o.lookup.normal_limit) && o.lookup.normal_limit < 1.5, "normal_limit (in radians)",
+                   o.lookup.normal_limit);
+    expect_setting(positive(o.lookup.plane_tolerance), "plane_tolerance", o.lookup.plane_tolerance);
+    expect_setting(is_finite(o.lookup.minimum_weight) && o.lookup.minimum_weight >= 0, "minimum_weight",
+                   o.lookup.minimum_weight);
+}
+
+/// Asks the records of a tree whose spheres cover `point`. Items have `.record` and `.bend`.
+template <typename S, typename T, typename Tree, typename Counters>
+[[nodiscard]] irradiance_answer<S, T> ask(const Tree& tree, const vec3<T>& point, const vec3<T>& normal,
+                                          const lookup_limits<T>& limits, Counters& counters) {
+    record_blend<S, T> blend{point, normal, limits};
+    tree.visit_covering(point, [&](const auto& item) { count(counters, blend.add(item.record, item.bend)); });
+    const irradiance_answer<S, T> answer = blend.answer();
+    count_lookup(counters, static_cast<bool>(answer));
+    return answer;
+}
+
+}  // namespace detail
+
+/// A finished irradiance cache: only to be asked. Safe from many threads.
+template <Spectrum S, std::floating_point T = band_of<S>, record_features Features = record_features{}>
+class frozen_irradiance_cache {
+public:
+    using record = irradiance_record<S, T, Features>;
+    using spectrum = S;
+    using scalar = T;
+
+    /// Holds nothing and answers nothing.
+    frozen_irradiance_cache() : frozen_irradiance_cache{irradiance_cache_options{}} {}
+    explicit frozen_irradiance_cache(const irradiance_cache_options& options)
+        : options_{options}, limits_{options.lookup, options.reach.metric} {}
+
+    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
+    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal) const {
+        no_counters nothing;
+        return lookup(point, normal, nothing);
+    }
+    template <typename Counters>
+    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
+                                                 Counters& counters) const {
+        return detail::ask<S, T>(tree_, point, normal, limits_, counters);
+    }
+
+    [[nodiscard]] std::uint32_t size() const { return tree_.size(); }
+    [[nodiscard]] const record& operator[](std::uint32_t index) const { return tree_[index].record; }
+    [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
+
+    /// Bytes taken from the heap.
+    [[nodiscard]] std::size_t bytes() const { return tree_.bytes(); }
+
+    /// Appends a record with its error at its own radius, relative to its irradiance; the order of appending is the
+    /// order of summing. False where the reach cannot be stored.
+    bool append(const record& r, T bend) {
+        return static_cast<bool>(tree_.insert({r, bend}, r.position(), r.longest_radius()));
+    }
+
+private:
+    struct item {
+        irradiance_record<S, T, Features> record;
+        T bend;
+    };
+
+    irradiance_cache_options options_;
+    detail::lookup_limits<T> limits_;
+    octree<item, T> tree_;
+};
+
+/// An irradiance cache that grows. Lookups are safe from many threads while nobody inserts.
+template <Spectrum S, std::floating_point T = band_of<S>, record_features Features = record_features{}>
+class irradiance_cache {
+public:
+    using record = irradiance_record<S, T, Features>;
+    using estimate = irradiance_estimate<S, T>;
+    using frozen = frozen_irradiance_cache<S, T, Features>;
+    using spectrum = S;
+    using scalar = T;
+
+    /// A cache for a scene of the given radius, which is what the options' lengths are measured by.
+    /// Throws `std::invalid_argument` for a radius or options that make no sense.
+    explicit irradiance_cache(T scene_radius, const irradiance_cache_options& options = {})
+        : options_{options}, scene_radius_{scene_radius}, limits_{options.lookup, options.reach.metric} {
+        detail::check(options);
+        detail::expect_setting(is_finite(scene_radius) && scene_radius > 0, "scene radius",
+                               static_cast<double>(scene_radius));
+    }
+    explicit irradiance_cache(const bounds<T>& scene, const irradiance_cache_options& options = {})
+        : irradiance_cache{scene.radius(), options} {}
+
+    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
+    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal) const {
+        no_counters nothing;
+        return lookup(point, normal, nothing);
+    }
+    template <typename Counters>
+    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
+                                                 Counters& counters) const {
+        return detail::ask<S, T>(tree_, point, normal, limits_, counters);
+    }
+
+    /// The reach that `e` would have here, neighbours apart. `footprint`: diameter of a pixel at the point, 0 for none.
+    [[nodiscard]] record_reach<T> reach(const estimate& e, T footprint = 0) const {
+        return reach_of(e, options_.reach, scene_radius_, footprint);
+    }
+
+    /// Remembers `e`. Clamps it and its neighbours to the fixed point R_i = min_j (R_j + |x_i - x_j|) of all records'
+    /// own reaches, which does not depend on the order of insertion.
+    record_status insert(const estimate& e, T footprint = 0) {
+        record_reach<T> r = reach(e, footprint);
+        if (!is_usable(e, r)) { return refuse(record_status::bad_estimate); }
+        const T own = r.own_radius;
+        if (options_.clamp_neighbours) { r.radius = std::max(r.lowest, clamped(e.position, own)); }
+        const record made{e, r};
+        const T bend = own_bend(r.radius);
+        if (!tree_.insert({made, bend, own, r.lowest, tree_.size()}, made.position(), made.longest_radius())) {
+            return refuse(record_status::bad_reach);
+        }
+        if (options_.clamp_neighbours) { clamp_others(e.position, own); }
+        return record_status::inserted;
+    }
+
+    [[nodiscard]] std::uint32_t size() const { return tree_.size(); }
+    [[nodiscard]] const record& operator[](std::uint32_t index) const { return tree_[index].record; }
+    [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
+    [[nodiscard]] T scene_radius() const { return scene_radius_; }
+
+    /// How many estimates were refused.
+    [[nodiscard]] std::size_t refused() const { return refused_; }
+
+    /// The records in their present reach and in their order, ready to be asked only. Each learns from its neighbours
+    /// how far off its extrapolation is: the upper quartile of |E_i + grad d - E_j| / d², without the noise of both.
+    template <Executor E = in_sequence>
+    [[nodiscard]] frozen freeze(const E& run = {}) const {
+        std::vector<T> bends(size());
+        for_each_block(run, bends.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) { bends[i] = learnt_bend(tree_[static_cast<std::uint32_t>(i)]); }
+        });
+        frozen result{options_};
+        for (std::uint32_t i = 0; i < size(); ++i) { result.append(tree_[i].record, bends[i]); }
+        return result;
+    }
+
+private:
+    struct item {
+        irradiance_record<S, T, Features> record;
+        T bend;
+        T own_radius;
+        T lowest;
+        std::uint32_t index;
+    };
+
+    record_status refuse(record_status why) {
+        ++refused_;
+        return why;
+    }
+
+    // The triangle inequality makes one step from the own reaches the fixed point of any number of steps.
+    [[nodiscard]] T clamped(const vec3<T>& position, T own) const {
+        T radius = own;
+        tree_.visit_within(position, own, [&](const item& other) {
+            radius = std::min(radius, other.own_radius + glm::distance(other.record.position(), position));
+        });
+        return radius;
+    }
+
+    void clamp_others(const vec3<T>& position, T own) {
+        std::vector<std::pair<std::uint32_t, T>> shrunk;
+        tree_.visit_covering(position, [&](const item& other) {
+            const T limit = own + glm::distance(other.record.position(), position);
+            const T radius = std::max(other.lowest, limit);
+            if (radius < other.record.radius()) { shrunk.emplace_back(other.index, radius); }
+        });
+        for (const auto& [index, radius] : shrunk) {
+            item& other = tree_[index];
+            other.record = other.record.with_radius(radius);
+            other.bend = own_bend(radius);
+        }
+    }
+
+    /// What the rule that set the reach takes the error at the border to be, relative to the irradiance.
+    [[nodiscard]] T own_bend(T radius) const {
+        const T accuracy = static_cast<T>(options_.reach.accuracy);
+        if (options_.reach.metric != error_metric::hessian) { return accuracy; }
+        // Half of lambda R², where R = accuracy (4 scene² / lambda)^(1/4).
+        return std::min(T(1), 2 * square(accuracy * accuracy * scene_radius_ / radius));
+    }
+
+    /// The same as the neighbours show it (math of leave-one-out: each neighbour is a test of the extrapolation).
+    [[nodiscard]] T learnt_bend(const item& one) const {
+        const record& r = one.record;
+        const frame<T> axes = r.axes();
+        const T irradiance = static_cast<T>(max_component(r.irradiance()));
+        std::vector<T> errors;
+        tree_.visit_within(r.position(), r.longest_radius(), [&](const item& other) {
+            if (other.index == one.index) { return; }
+            const vec3<T> n = other.record.normal();
+            const vec3<T> local = axes.to_local(other.record.position() - r.position());
+            const T t2 = r.distance2(local);
+            if (!(t2 < 1) || !(t2 > T(0.01)) || length2(n - axes.z) / 2 > limits_.turn) { return; }
+            errors.push_back(disagreement(r, other.record, r.extrapolate(local, axes.to_local(n))) / t2);
+        });
+        if (errors.empty() || !(irradiance > 0)) { return one.bend; }
+        const auto quartile = errors.begin() + static_cast<std::ptrdiff_t>((errors.size() * 3) / 4);
+        std::nth_element(errors.begin(), quartile, errors.end());
+        return *quartile / irradiance;
+    }
+
+    [[nodiscard]] static T disagreement(const record& a, const record& b, const S& extrapolated) {
+        const S difference = extrapolated + b.irradiance() * band_of<S>(-1);
+        const T high =
+            static_cast<T>(std::max(max_component(difference), max_component(S(difference * band_of<S>(-1)))));
+        if constexpr (Features.noise) {
+            const T noise2 = square(a.relative_noise() * static_cast<T>(max_component(a.irradiance()))) +
+                             square(b.relative_noise() * static_cast<T>(max_component(b.irradiance())));
+            return std::sqrt(std::max(T(0), high * high - noise2));
+        } else {
+            return high;
+        }
+    }
+
+    irradiance_cache_options options_;
+    T scene_radius_;
+    detail::lookup_limits<T> limits_;
+    octree<item, T> tree_;
+    std::size_t refused_{0};
+};
+
+}  // namespace aglow

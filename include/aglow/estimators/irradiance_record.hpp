@@ -1,0 +1,211 @@
+// One remembered irradiance, in few bytes, and what it says about points near it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include <aglow/concepts/spectrum.hpp>
+#include <aglow/core/frame.hpp>
+#include <aglow/core/numbers.hpp>
+#include <aglow/core/octahedral.hpp>
+#include <aglow/core/vec.hpp>
+#include <aglow/estimators/compact_gradients.hpp>
+#include <aglow/estimators/irradiance_estimate.hpp>
+#include <aglow/estimators/record_reach.hpp>
+
+namespace aglow {
+
+/// What a record remembers beside place, normal, irradiance and radius. What is left out takes no room and no code.
+struct record_features {
+    bool gradients{true};  ///< first-order extrapolation
+    bool ellipse{true};    ///< a reach that differs by direction
+    bool noise{true};      ///< standard error and number of rays
+    bool incident{false};  ///< mean direction to the light, for glossy surfaces
+
+    friend constexpr bool operator==(const record_features&, const record_features&) = default;
+};
+
+namespace detail {
+
+/// Stands in for a part that is left out; the number keeps two of them from being one type, and so from taking room.
+template <int>
+struct left_out {};
+
+template <bool Kept, typename Part, int Number>
+using part_or_nothing = std::conditional_t<Kept, Part, left_out<Number>>;
+
+/// Half of 1 - (shorter/longer)² times (cos, sin) of twice the shorter axis' angle: an ellipse without its size.
+class compact_ellipse {
+public:
+    compact_ellipse() = default;
+    template <typename T>
+    compact_ellipse(T ratio, const vec2<T>& axis) {
+        const T depth = (1 - 1 / (ratio * ratio)) / 2;
+        codes_ = {code(depth * (axis.x * axis.x - axis.y * axis.y)), code(depth * (2 * axis.x * axis.y))};
+    }
+    template <typename T>
+    [[nodiscard]] vec2<T> value() const {
+        return {static_cast<T>(codes_[0]) / T(65534), static_cast<T>(codes_[1]) / T(65534)};
+    }
+
+private:
+    template <typename T>
+    static std::int16_t code(T x) {
+        return static_cast<std::int16_t>(std::lround(std::clamp(x, T(-0.5), T(0.5)) * T(65534)));
+    }
+    std::array<std::int16_t, 2> codes_{};
+};
+
+/// A relative error x >= 0 as x / (1 + x) in 16 bits, and a count that stops at 65535.
+class compact_noise {
+public:
+    compact_noise() = default;
+    template <typename T>
+    compact_noise(T noise, std::uint32_t rays)
+        : noise_{static_cast<std::uint16_t>(std::lround(noise / (1 + noise) * T(65534)))},
+          rays_{static_cast<std::uint16_t>(std::min(rays, 65535u))} {}
+    template <typename T>
+    [[nodiscard]] T noise() const {
+        const T x = static_cast<T>(noise_) / T(65534);
+        return x / std::max(T(1) / T(65534), 1 - x);
+    }
+    [[nodiscard]] std::uint32_t rays() const { return rays_; }
+
+private:
+    std::uint16_t noise_{};
+    std::uint16_t rays_{};
+};
+
+}  // namespace detail
+
+/// Irradiance at a point and how it goes on around it. 64 bytes for RGB with all but `incident`, 32 for gray without
+/// gradients. Trivially copyable; scaling its scene by a power of two scales it exactly.
+template <Spectrum S, std::floating_point T = band_of<S>, record_features Features = record_features{}>
+class irradiance_record {
+public:
+    static constexpr record_features features = Features;
+
+    irradiance_record() = default;
+
+    /// Expects what `is_usable(e, reach)` grants.
+    irradiance_record(const irradiance_estimate<S, T>& e, const record_reach<T>& reach)
+        : position_{e.position}, irradiance_{e.irradiance}, radius_{reach.radius}, normal_{e.axes.z} {
+        const frame<T> own = axes();
+        const auto turned = [&](const auto& v) {
+            const T xx = glm::dot(own.x, e.axes.x), xy = glm::dot(own.x, e.axes.y);
+            const T yx = glm::dot(own.y, e.axes.x), yy = glm::dot(own.y, e.axes.y);
+            return std::remove_cvref_t<decltype(v)>{v.x * xx + v.y * xy, v.x * yx + v.y * yy};
+        };
+        if constexpr (Features.gradients) {
+            const irradiance_gradients<S> g{turned(e.gradients.translation), turned(e.gradients.rotation)};
+            gradients_ = compact_gradients<S, T>{g, irradiance_, radius_};
+        }
+        if constexpr (Features.ellipse) { ellipse_ = {reach.ratio, turned(reach.axis)}; }
+        if constexpr (Features.noise) { noise_ = {e.relative_noise, e.rays - e.rejected}; }
+        if constexpr (Features.incident) {
+            const vec3<T> towards = e.axes.to_world(e.incident);
+            incident_ = length2(towards) > 0 ? octahedral{towards} : normal_;
+        }
+    }
+
+    [[nodiscard]] const vec3<T>& position() const { return position_; }
+    [[nodiscard]] vec3<T> normal() const { return normal_.direction<T>(); }
+    [[nodiscard]] const S& irradiance() const { return irradiance_; }
+
+    /// The shorter semi-axis of the reach.
+    [[nodiscard]] T radius() const { return radius_; }
+
+    /// The longer semi-axis, rounded upwards: beyond it the record has no weight.
+    [[nodiscard]] T longest_radius() const {
+        if constexpr (Features.ellipse) {
+            const vec2<T> e = ellipse_.template value<T>();
+            const T depth = 2 * std::sqrt(e.x * e.x + e.y * e.y);
+            return radius_ / std::sqrt(std::max(T(0.01), 1 - depth)) * (1 + 8 * std::numeric_limits<T>::epsilon());
+        } else {
+            return radius_;
+        }
+    }
+
+    /// Mean direction to the light; the normal where it was black.
+    [[nodiscard]] vec3<T> incident() const requires(Features.incident) { return incident_.template direction<T>(); }
+
+    /// Standard error over irradiance, of the largest band.
+    [[nodiscard]] T relative_noise() const requires(Features.noise) { return noise_.template noise<T>(); }
+
+    /// How many accepted rays it was made from; 65535 stands for that many or more.
+    [[nodiscard]] std::uint32_t rays() const requires(Features.noise) { return noise_.rays(); }
+
+    /// The record's axes: what its gradients and its ellipse are given in.
+    [[nodiscard]] frame<T> axes() const { return frame<T>{normal()}; }
+
+    /// Squared distance of a point, given in `axes()` from the position, in units of the reach: below 1 inside the
+    /// ellipsoid whose third semi-axis is the shorter one.
+    [[nodiscard]] T distance2(const vec3<T>& local) const {
+        const T inverse = 1 / radius_;
+        const T x = local.x * inverse;
+        const T y = local.y * inverse;
+        const T z = local.z * inverse;
+        if constexpr (Features.ellipse) {
+            const vec2<T> e = ellipse_.template value<T>();
+            const T round = 1 - std::sqrt(e.x * e.x + e.y * e.y);
+            return std::max(T(0), round * (x * x + y * y) + e.x * (x * x - y * y) + e.y * (2 * x * y)) + z * z;
+        } else {
+            return x * x + y * y + z * z;
+        }
+    }
+
+    /// Irradiance at a point (in `axes()` from the position) whose normal is `n` (in `axes()`), to first order; never
+    /// negative. Within the reach the change is at most the irradiance itself.
+    [[nodiscard]] S extrapolate(const vec3<T>& local, const vec3<T>& n) const {
+        if constexpr (Features.gradients) {
+            // (0, 0, 1) x n
+            return gradients_.extrapolate(irradiance_, {local.x / radius_, local.y / radius_, -n.y, n.x});
+        } else {
+            return irradiance_;
+        }
+    }
+
+    /// The same record with another radius, the shape of the ellipse kept. Expects `radius` > 0.
+    [[nodiscard]] irradiance_record with_radius(T radius) const {
+        irradiance_record result = *this;
+        result.radius_ = radius;
+        if constexpr (Features.gradients) { result.gradients_ = gradients_.rescaled(radius_, radius); }
+        return result;
+    }
+
+private:
+    vec3<T> position_{};
+    S irradiance_{};
+    T radius_{};
+    octahedral normal_{vec3<T>{0, 0, 1}};
+    [[no_unique_address]] detail::part_or_nothing<Features.ellipse, detail::compact_ellipse, 0> ellipse_{};
+    [[no_unique_address]] detail::part_or_nothing<Features.noise, detail::compact_noise, 1> noise_{};
+    [[no_unique_address]] detail::part_or_nothing<Features.gradients, compact_gradients<S, T>, 2> gradients_{};
+    [[no_unique_address]] detail::part_or_nothing<Features.incident, octahedral, 3> incident_{};
+};
+
+/// Whether a record can be made: place, normal and light are numbers, the reach is a length, most rays were good.
+template <Spectrum S, std::floating_point T>
+[[nodiscard]] bool is_usable(const irradiance_estimate<S, T>& e, const record_reach<T>& reach) {
+    const auto finite = [](const vec3<T>& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); };
+    const auto finite_band = [](const S& s) {
+        return is_finite(max_component(s)) && is_finite(max_component(S(s * band_of<S>(-1))));
+    };
+    const auto& [t, r] = e.gradients;
+    const auto& [xx, xy, yy] = e.curvature;
+    const T length = length2(e.axes.z);
+    const bool known = is_finite(e.mean_inverse_distance) && e.mean_inverse_distance >= 0 &&
+                       is_finite(e.nearest_inverse_distance) && e.nearest_inverse_distance >= 0 && is_finite(xx) &&
+                       is_finite(xy) && is_finite(yy);
+    return known && finite(e.position) && finite(e.axes.z) && length > T(0.99) && length < T(1.01) &&
+           is_radiance(e.irradiance) && finite_band(t.x) && finite_band(t.y) && finite_band(r.x) && finite_band(r.y) &&
+           is_finite(reach.radius) && reach.radius > 0 && is_finite(reach.ratio) && is_finite(e.relative_noise) &&
+           2 * e.rejected <= e.rays;
+}
+
+}  // namespace aglow

@@ -1,0 +1,225 @@
+#include <aglow/algorithms/fill_cache.hpp>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/glowing_room.hpp"
+
+using namespace aglow;
+using support::glowing_room;
+using support::point3;
+
+namespace {
+
+using rgb = vec3<float>;
+using cache = irradiance_cache<rgb>;
+using candidates = std::vector<cache_candidate<float>>;
+
+/// Five walls of the room (not the light, +z), in float.
+gather_point<float> somewhere(random_sampler<float>& random, float size) {
+    const int wall = std::min(4, static_cast<int>(random.next_1d() * 5));
+    gather_point<float> p;
+    for (int i = 0; i < 3; ++i) { p.position[i] = (random.next_1d() * 2 - 1) * size; }
+    p.position[wall / 2] = wall % 2 ? size : -size;
+    p.normal = rgb{0};
+    p.normal[wall / 2] = wall % 2 ? -1.f : 1.f;
+    p.position_error = position_error(size);
+    return p;
+}
+
+candidates around(int count, float size = 1) {
+    random_sampler<float> random{1};
+    candidates result;
+    for (int i = 0; i < count; ++i) { result.push_back({somewhere(random, size), 0, static_cast<std::uint64_t>(i)}); }
+    return result;
+}
+
+struct glow_of {
+    glowing_room room{};
+    incoming_light<rgb, float> operator()(const ray<float>& r, const random_numbers<float>&) const {
+        const auto [wall, distance] = room.meet(r);
+        return {rgb(room.glow[static_cast<std::size_t>(wall)]), distance};
+    }
+};
+
+bool same(const cache& a, const cache& b) {
+    if (a.size() != b.size()) { return false; }
+    for (std::uint32_t i = 0; i < a.size(); ++i) {
+        if (a[i].position() != b[i].position() || a[i].irradiance() != b[i].irradiance() ||
+            a[i].radius() != b[i].radius()) {
+            return false;
+        }
+    }
+    return true;
+}
+
+double relative_rmse(const cache::frozen& filled, const glowing_room& room, int probes) {
+    random_sampler<float> random{77};
+    double off2 = 0;
+    double all2 = 0;
+    for (int i = 0; i < probes; ++i) {
+        const gather_point<float> p = somewhere(random, static_cast<float>(room.size));
+        const point3 exact = room.irradiance(point3(p.position), point3(p.normal));
+        const auto a = filled.lookup(p.position, p.normal);
+        if (!a) { continue; }
+        off2 += square(glm::length(point3(a.irradiance) - exact));
+        all2 += square(glm::length(exact));
+    }
+    return std::sqrt(off2 / all2);
+}
+
+}  // namespace
+
+TEST_CASE("fill_cache: one, two, three and eight threads make the same records to the bit") {
+    const auto where = around(2000);
+    cache one{1.732f};
+    const fill_result result = fill_cache(one, where, glow_of{}, {.rays = 100});
+    CHECK(result.records == one.size());
+    CHECK(result.records > 50);
+    CHECK(result.uncovered == 0);
+    CHECK(result.rays >= result.records * 95);
+    CHECK(result.rejected == 0);
+    CHECK_FALSE(result.cancelled);
+    for (const unsigned threads : {1u, 2u, 3u, 8u}) {
+        cache other{1.732f};
+        fill_cache(other, where, glow_of{}, {.rays = 100}, own_threads{threads});
+        CHECK(same(one, other));
+        const auto a = one.freeze();
+        const auto b = other.freeze(own_threads{threads});
+        random_sampler<float> random{3};
+        for (int i = 0; i < 100; ++i) {
+            const auto p = somewhere(random, 1);
+            CHECK(a.lookup(p.position, p.normal).irradiance == b.lookup(p.position, p.normal).irradiance);
+            CHECK(a.lookup(p.position, p.normal).error == b.lookup(p.position, p.normal).error);
+        }
+    }
+}
+
+TEST_CASE("fill_cache: the filled cache agrees with Lambert's formula, better with more records and more rays") {
+    const glow_of incoming;
+    const auto error = [&](double accuracy, std::uint32_t rays) {
+        irradiance_cache_options o;
+        o.reach.accuracy = accuracy;
+        cache c{1.732f, o};
+        fill_cache(c, around(8000), incoming, {.rays = rays});
+        return relative_rmse(c.freeze(), incoming.room, 2000);
+    };
+    const double coarse = error(0.15, 200);
+    const double fine = error(0.06, 1000);
+    CHECK(coarse < 0.04);
+    CHECK(fine < 0.012);
+}
+
+TEST_CASE("fill_cache: in a furnace every place has pi times the radiance") {
+    glow_of incoming;
+    incoming.room.glow.fill({1, 1, 1});
+    cache c{1.732f};
+    fill_cache(c, around(1000), incoming, {.rays = 64});
+    const auto filled = c.freeze();
+    random_sampler<float> random{4};
+    for (int i = 0; i < 300; ++i) {
+        const auto p = somewhere(random, 1);
+        const auto a = filled.lookup(p.position, p.normal);
+        if (a) { CHECK(a.irradiance.x == Approx(pi<float>)); }
+    }
+}
+
+TEST_CASE("fill_cache: a scene 2^k larger gets the same records 2^k larger, to the bit") {
+    const auto filled = [](int k) {
+        const float size = std::ldexp(1.f, k);
+        glow_of incoming;
+        incoming.room.size = size;
+        cache c{1.732f * size};
+        fill_cache(c, around(1000, size), incoming, {.rays = 64});
+        return c;
+    };
+    const cache one = filled(0);
+    for (const int k : {-12, 5}) {
+        const cache other = filled(k);
+        REQUIRE(other.size() == one.size());
+        const float size = std::ldexp(1.f, k);
+        for (std::uint32_t i = 0; i < one.size(); ++i) {
+            CHECK(other[i].position() == one[i].position() * size);
+            CHECK(other[i].irradiance() == one[i].irradiance());
+            CHECK(other[i].radius() == one[i].radius() * size);
+        }
+    }
+}
+
+TEST_CASE("fill_cache: a crevice takes no more records than its area over the smallest reach allows") {
+    // Two floors that meet at an ever narrower angle: the distance to the other goes to zero.
+    const auto incoming = [](const ray<float>& r, const auto&) {
+        const float slope = 0.2f;
+        const float t = (slope * r.origin.x - r.origin.z) / (r.direction.z - slope * r.direction.x);
+        return incoming_light<rgb, float>{rgb{1, 1, 1}, t > 0 ? t : std::numeric_limits<float>::infinity()};
+    };
+    irradiance_cache_options o;
+    o.reach.metric = error_metric::split_sphere;
+    o.reach.accuracy = 0.1;
+    o.reach.minimum_radius = 0.02;
+    cache c{1.f, o};
+    candidates where;
+    random_sampler<float> random{5};
+    for (int i = 0; i < 20000; ++i) {
+        where.push_back({{{random.next_1d() * 0.3f, random.next_1d() * 0.3f, 0}, {0, 0, 1}, 1e-7f},
+                         0,
+                         static_cast<std::uint64_t>(i)});
+    }
+    const fill_result result = fill_cache(c, where, incoming, {.rays = 24});
+    CHECK(result.uncovered == 0);
+    // Records lie at least half the smallest reach apart: discs of a quarter of it do not overlap.
+    CHECK(static_cast<double>(c.size()) < square(0.3 + 0.02) / (pi<double> * square(0.02 / 4)));
+    for (std::uint32_t i = 0; i < c.size(); ++i) { CHECK(c[i].radius() >= 0.02f); }
+}
+
+TEST_CASE("fill_cache: candidates that are no places, and light that is no number, are refused and end") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    auto where = around(50);
+    where[0].place.position.x = nan;
+    where[1].place.normal = {0, 0, 0};
+    cache c{1.732f};
+    const fill_result result = fill_cache(c, where, glow_of{}, {.rays = 64});
+    CHECK(result.refused == 2);
+    CHECK(result.uncovered == 0);
+    cache dark{1.732f};
+    const auto no_number = [&](const ray<float>&, const auto&) { return incoming_light<rgb, float>{rgb{nan}, 1}; };
+    const fill_result none = fill_cache(dark, where, no_number, {.rays = 64});
+    CHECK(none.records == 0);
+    CHECK(none.rejected == none.rays);
+    CHECK(dark.size() == 0);
+}
+
+TEST_CASE("fill_cache: stops when told to, and never beyond the most records asked for") {
+    const auto where = around(3000);
+    cache c{1.732f};
+    const fill_result stopped = fill_cache(c, where, glow_of{}, {.rays = 64}, in_sequence{},
+                                           [](const fill_progress& p) { return p.records < 20; });
+    CHECK(stopped.cancelled);
+    CHECK(stopped.uncovered > 0);
+    cache few{1.732f};
+    const fill_result limited = fill_cache(few, where, glow_of{}, {.rays = 64, .maximum_records = 30});
+    CHECK(few.size() == 30);
+    CHECK(limited.uncovered > 0);
+}
+
+TEST_CASE("fill_cache: both sides of a sheet are two records that do not mix") {
+    const auto incoming = [](const ray<float>& r, const auto&) {
+        return incoming_light<rgb, float>{r.direction.z > 0 ? rgb{1, 0, 0} : rgb{0, 0, 1}, 1};
+    };
+    candidates where{{{{0, 0, 0}, {0, 0, 1}, 1e-6f}, 0, 1}, {{{0, 0, 0}, {0, 0, -1}, 1e-6f}, 0, 2}};
+    cache c{1.f};
+    fill_cache(c, where, incoming, {.rays = 64});
+    REQUIRE(c.size() == 2);
+    CHECK(c.lookup(vec3<float>{0}, {0, 0, 1}).irradiance.z == 0);
+    CHECK(c.lookup(vec3<float>{0}, {0, 0, -1}).irradiance.x == 0);
+}
+
+TEST_CASE("irradiance_or: asks the cache first and the fallback only where it is silent") {
+    cache c{1.732f};
+    const auto fallback = [] { return rgb{7, 7, 7}; };
+    CHECK(irradiance_or(c, vec3<float>{0, 0, -1}, vec3<float>{0, 0, 1}, fallback).x == 7);
+    fill_cache(c, around(500), glow_of{}, {.rays = 64});
+    CHECK(irradiance_or(c, c[0].position(), c[0].normal(), fallback).x < 7);
+}

@@ -1,0 +1,349 @@
+#include <aglow/estimators/irradiance_cache.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <aglow/core/random.hpp>
+
+#include "support/catch.hpp"
+
+using namespace aglow;
+
+namespace {
+
+using rgb = vec3<float>;
+using cache = irradiance_cache<rgb>;
+using estimate_rgb = irradiance_estimate<rgb, float>;
+
+/// An estimate whose reach is `distance`, by the split-sphere rule at accuracy 1.
+estimate_rgb estimate_at(const vec3<float>& position, const vec3<float>& normal, const rgb& irradiance,
+                         float distance) {
+    estimate_rgb e;
+    e.position = position;
+    e.axes = frame<float>{glm::normalize(normal)};
+    e.irradiance = irradiance;
+    e.mean_inverse_distance = 1 / distance;
+    e.rays = 100;
+    return e;
+}
+
+irradiance_cache_options by_distance(error_metric metric = error_metric::split_sphere) {
+    irradiance_cache_options o;
+    o.reach = {.metric = metric, .accuracy = 1, .minimum_radius = 1e-4, .maximum_radius = 1, .minimum_footprints = 0};
+    return o;
+}
+
+constexpr vec3<float> up{0, 0, 1};
+
+/// What a cache says about options that it refuses.
+std::string refusal(const irradiance_cache_options& o) {
+    try {
+        const cache refused{1.f, o};
+    } catch (const std::invalid_argument& e) { return e.what(); }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("irradiance_cache: an empty one says nothing") {
+    const cache c{10.f};
+    CHECK_FALSE(c.lookup({0, 0, 0}, up));
+    CHECK(c.lookup({0, 0, 0}, up).irradiance == rgb{0});
+    CHECK_FALSE(cache::frozen{}.lookup({0, 0, 0}, up));
+    CHECK_FALSE(c.freeze().lookup({0, 0, 0}, up));
+}
+
+TEST_CASE("irradiance_cache: at its own place a record returns what it was given") {
+    for (const error_metric metric :
+         {error_metric::split_sphere, error_metric::nearest_distance, error_metric::hessian}) {
+        cache c{10.f, by_distance(metric)};
+        const vec3<float> n = glm::normalize(vec3<float>{1, 2, 3});
+        REQUIRE(c.insert(estimate_at({1, 2, 3}, n, {1, 2, 3}, 1)) == record_status::inserted);
+        const auto a = c.lookup({1, 2, 3}, n);
+        REQUIRE(a);
+        CHECK(a.records == 1);
+        CHECK(glm::length(a.irradiance - rgb{1, 2, 3}) < 1e-5f);
+    }
+}
+
+TEST_CASE("irradiance_cache: two records at one place give their mean") {
+    cache c{10.f, by_distance()};
+    c.insert(estimate_at({0, 0, 0}, up, {1, 2, 3}, 1));
+    c.insert(estimate_at({0, 0, 0}, up, {3, 2, 1}, 1));
+    CHECK(glm::length(c.lookup({0, 0, 0}, up).irradiance - rgb{2, 2, 2}) < 1e-5f);
+}
+
+TEST_CASE("irradiance_cache: the normal limit is meant in radians") {
+    auto o = by_distance(error_metric::hessian);
+    o.reach.maximum_radius = 0.5;
+    o.lookup.normal_limit = 10 * pi<double> / 180;
+    cache c{10.f, o};
+    c.insert(estimate_at({0, 0, 0}, up, {1, 1, 1}, 1));
+    const auto leaning = [](double degrees) {
+        const double a = degrees * pi<double> / 180;
+        return vec3<float>{static_cast<float>(std::sin(a)), 0, static_cast<float>(std::cos(a))};
+    };
+    CHECK(c.lookup({0, 0, 0}, leaning(9.8)));
+    CHECK_FALSE(c.lookup({0, 0, 0}, leaning(10.1)));
+    CHECK_FALSE(c.lookup({0, 0, 0}, leaning(180)));
+}
+
+TEST_CASE("irradiance_cache: a weight is near zero where its record ends, so nothing jumps") {
+    for (const error_metric metric :
+         {error_metric::split_sphere, error_metric::nearest_distance, error_metric::hessian}) {
+        cache c{10.f, by_distance(metric)};
+        auto e = estimate_at({0, 0, 0}, up, {1, 1, 1}, 0.5f);
+        e.nearest_inverse_distance = 2;
+        e.curvature = {4000, 1000, 8000};
+        REQUIRE(c.insert(e) == record_status::inserted);
+        const auto frozen = c.freeze();
+        for (float angle = 0; angle < 6.28f; angle += 0.1f) {
+            float before = 2;
+            for (float d = 0.0005f; d < 2; d += 0.0005f) {
+                const vec3<float> p{d * std::cos(angle), d * std::sin(angle), 0};
+                const float weight = frozen.lookup(p, up).weight;
+                CHECK(weight == c.lookup(p, up).weight);
+                CHECK(weight <= before);
+                // Beyond the minimum weight it goes out in one small step.
+                if (weight == 0 && before > 0 && before < 2) { CHECK(before < 0.01f); }
+                before = weight;
+            }
+            CHECK(before == 0);
+        }
+    }
+}
+
+TEST_CASE(
+    "irradiance_cache: what lies in front of a record or behind it is not covered, and a floor is, at any scale") {
+    for (const float scale : {1e-6f, 1.f, 1e6f}) {
+        cache c{10 * scale, by_distance()};
+        c.insert(estimate_at({1 * scale, 2 * scale, 3 * scale}, up, {1, 1, 1}, 1 * scale));
+        CHECK(c.lookup({1.3f * scale, 2 * scale, 3 * scale}, up));
+        CHECK(c.lookup({1.3f * scale, 2 * scale, std::nextafter(3 * scale, 0.f)}, up));
+        CHECK_FALSE(c.lookup({1 * scale, 2 * scale, 3.1f * scale}, up));
+        CHECK_FALSE(c.lookup({1 * scale, 2 * scale, 2.9f * scale}, up));
+    }
+}
+
+TEST_CASE("irradiance_cache: counters say why records were rejected") {
+    cache c{10.f, by_distance()};
+    c.insert(estimate_at({0, 0, 0}, up, {1, 1, 1}, 1));
+    lookup_counters n;
+    (void)c.lookup({0.1f, 0, 0}, up, n);
+    (void)c.lookup({0.1f, 0, 0}, {1, 0, 0}, n);
+    (void)c.lookup({0, 0, 0.5f}, up, n);
+    (void)c.lookup({0.95f, 0, 0}, glm::normalize(vec3<float>{0, 0.15f, 1}), n);
+    (void)c.lookup({5, 0, 0}, up, n);
+    CHECK(n.lookups == 5);
+    CHECK(n.used == 1);
+    CHECK(n.normal == 1);
+    CHECK(n.plane == 1);
+    CHECK(n.distance == 1);
+    CHECK(n.missed == 4);
+}
+
+TEST_CASE("irradiance_cache: refuses what is no record, counts it, and answers as before") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    cache c{10.f, by_distance()};
+    c.insert(estimate_at({0, 0, 0}, up, {1, 2, 3}, 1));
+    const auto before = c.lookup({0.2f, 0, 0}, up);
+    auto black_sky = estimate_at({0, 0, 0}, up, {nan, 1, 1}, 1);
+    CHECK(c.insert(black_sky) == record_status::bad_estimate);
+    CHECK(c.insert(estimate_at({0, nan, 0}, up, {1, 1, 1}, 1)) == record_status::bad_estimate);
+    CHECK(c.insert(estimate_at({0, 0, 0}, up, {1, -1, 1}, 1)) == record_status::bad_estimate);
+    CHECK(c.insert(estimate_at({0, 0, inf}, up, {1, 1, 1}, 1)) == record_status::bad_estimate);
+    CHECK(c.insert(estimate_at({0, 0, 0}, up, {1, 1, 1}, nan)) == record_status::bad_estimate);
+    CHECK(c.refused() == 5);
+    CHECK(c.size() == 1);
+    CHECK(c.lookup({0.2f, 0, 0}, up).irradiance == before.irradiance);
+    CHECK(c.lookup({nan, 0, 0}, up).irradiance == rgb{0});
+    CHECK_FALSE(c.lookup({0, 0, 0}, {nan, 0, 1}));
+}
+
+TEST_CASE("irradiance_cache: records far outside the scene's bounds, and flat scenes, are as good as any") {
+    bounds<float> flat;
+    flat.add(vec3<float>{-1, -1, 0});
+    flat.add(vec3<float>{1, 1, 0});
+    cache c{flat, by_distance()};
+    auto sky = estimate_at({0, 0, 0}, up, {1, 1, 1}, 1);
+    sky.mean_inverse_distance = 0;
+    REQUIRE(c.insert(sky) == record_status::inserted);
+    CHECK(c[0].radius() <= flat.radius());
+    sky.position = {1000, -2000, 0};
+    REQUIRE(c.insert(sky) == record_status::inserted);
+    CHECK(c.lookup({1000.5f, -2000, 0}, up));
+}
+
+TEST_CASE("irradiance_cache: neighbours clamp each other to the min-plus closure, whatever the order of insertion") {
+    random_sampler<float> random{5};
+    std::vector<estimate_rgb> estimates;
+    for (int i = 0; i < 200; ++i) {
+        const vec3<float> p{random.next_1d() * 3, random.next_1d() * 3, 0};
+        estimates.push_back(estimate_at(p, up, {1, 1, 1}, 0.02f + square(random.next_1d()) * 3));
+    }
+    std::vector<float> expected(estimates.size());
+    for (std::size_t i = 0; i < estimates.size(); ++i) {
+        expected[i] = std::numeric_limits<float>::infinity();
+        for (const estimate_rgb& e : estimates) {
+            expected[i] =
+                std::min(expected[i], 1 / e.mean_inverse_distance + glm::distance(e.position, estimates[i].position));
+        }
+    }
+    bool any_clamped = false;
+    for (int order = 0; order < 3; ++order) {
+        std::vector<std::size_t> at(estimates.size());
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            at[i] = order == 0 ? i : order == 1 ? at.size() - 1 - i : (i * 77) % at.size();
+        }
+        cache c{10.f, by_distance()};
+        for (const std::size_t i : at) { REQUIRE(c.insert(estimates[i]) == record_status::inserted); }
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            CHECK(c[static_cast<std::uint32_t>(k)].radius() == expected[at[k]]);
+            any_clamped = any_clamped || expected[at[k]] < 1 / estimates[at[k]].mean_inverse_distance;
+        }
+    }
+    CHECK(any_clamped);
+}
+
+TEST_CASE("irradiance_cache: constant light stays that light at every point between records") {
+    random_sampler<float> random{6};
+    cache c{10.f, by_distance()};
+    for (int i = 0; i < 300; ++i) {
+        c.insert(estimate_at({random.next_1d() * 3, random.next_1d() * 3, 0}, up, {3, 2, 1}, 0.1f + random.next_1d()));
+    }
+    const auto frozen = c.freeze();
+    for (int i = 0; i < 500; ++i) {
+        const auto a = frozen.lookup({random.next_1d() * 3, random.next_1d() * 3, 0}, up);
+        if (a) { CHECK(glm::length(a.irradiance - rgb{3, 2, 1}) < 1e-5f); }
+    }
+}
+
+TEST_CASE("irradiance_cache: with exact gradients a plane of light is reproduced, and its error is told as none") {
+    // E = 2 + x - y/2 everywhere.
+    const auto light = [](float x, float y) { return 2 + x - y / 2; };
+    random_sampler<float> random{7};
+    irradiance_cache<float> c{10.f, by_distance(error_metric::hessian)};
+    for (int i = 0; i < 300; ++i) {
+        const vec3<float> p{random.next_1d(), random.next_1d(), 0};
+        irradiance_estimate<float, float> e;
+        e.position = p;
+        e.irradiance = light(p.x, p.y);
+        e.gradients.translation = {1, -0.5f};
+        e.mean_inverse_distance = 4;
+        e.rays = 1;
+        c.insert(e);
+    }
+    const auto frozen = c.freeze();
+    for (int i = 0; i < 200; ++i) {
+        const vec3<float> p{random.next_1d(), random.next_1d(), 0};
+        const auto a = frozen.lookup(p, up);
+        REQUIRE(a);
+        CHECK(a.irradiance == Approx(light(p.x, p.y)).epsilon(1e-3));
+        CHECK(a.error < 0.01f);
+    }
+}
+
+TEST_CASE("irradiance_cache: the error guess covers a curved light's true error") {
+    // E = 2 + x² with exact gradients: what is missed is d².
+    random_sampler<float> random{8};
+    irradiance_cache<float> c{1.f, by_distance()};
+    for (int i = 0; i < 200; ++i) {
+        const vec3<float> p{random.next_1d() * 2 - 1, random.next_1d() * 2 - 1, 0};
+        irradiance_estimate<float, float> e;
+        e.position = p;
+        e.irradiance = 2 + p.x * p.x;
+        e.gradients.translation = {2 * p.x, 0};
+        e.mean_inverse_distance = 4;
+        e.rays = 1;
+        c.insert(e);
+    }
+    const auto frozen = c.freeze();
+    int covered = 0;
+    double told = 0;
+    double happened = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const vec3<float> p{random.next_1d() * 1.8f - 0.9f, random.next_1d() * 1.8f - 0.9f, 0};
+        const auto a = frozen.lookup(p, up);
+        REQUIRE(a);
+        const float off = std::abs(a.irradiance - (2 + p.x * p.x));
+        covered += off <= a.error;
+        told += a.error;
+        happened += off;
+    }
+    CHECK(covered > 950);
+    CHECK(told < 4 * happened);
+}
+
+TEST_CASE("irradiance_cache: a scene 2^k larger gives the same answers to the bit") {
+    const auto filled = [](int k) {
+        const float length = std::ldexp(1.f, k);
+        auto o = by_distance(error_metric::hessian);
+        o.reach.accuracy = 0.1;
+        cache c{10 * length, o};
+        random_sampler<float> random{9};
+        for (int i = 0; i < 200; ++i) {
+            const auto colour = [&] { return rgb{random.next_1d(), random.next_1d(), random.next_1d()}; };
+            auto e = estimate_at(vec3<float>{random.next_1d() * 3, random.next_1d() * 3, 0} * length, up, colour(),
+                                 (0.5f + random.next_1d()) * length);
+            e.gradients.translation = {colour() / length, colour() / length};
+            e.gradients.rotation = {colour(), colour()};
+            e.curvature = {8 * random.next_1d() / length / length, random.next_1d() / length / length,
+                           -4 * random.next_1d() / length / length};
+            e.relative_noise = 0.01f;
+            c.insert(e, 0.01f * length);
+        }
+        return c;
+    };
+    const auto one = filled(0).freeze();
+    for (const int k : {-20, -5, 1, 18}) {
+        const float length = std::ldexp(1.f, k);
+        const auto other = filled(k).freeze();
+        random_sampler<float> random{10};
+        for (int i = 0; i < 300; ++i) {
+            const vec3<float> p{random.next_1d() * 3, random.next_1d() * 3, 0};
+            const vec3<float> n = glm::normalize(vec3<float>{random.next_1d() * 0.1f, random.next_1d() * 0.1f, 1});
+            const auto a = one.lookup(p, n);
+            const auto b = other.lookup(p * length, n);
+            CHECK(a.irradiance == b.irradiance);
+            CHECK(a.error == b.error);
+            CHECK(a.weight == b.weight);
+        }
+    }
+}
+
+TEST_CASE("irradiance_cache: permuted channels in, permuted channels out") {
+    random_sampler<float> random{11};
+    cache a{10.f, by_distance()};
+    cache b{10.f, by_distance()};
+    for (int i = 0; i < 100; ++i) {
+        auto e = estimate_at({random.next_1d(), random.next_1d(), 0}, up,
+                             {random.next_1d(), random.next_1d(), random.next_1d()}, 1);
+        e.gradients.translation.x = {random.next_1d(), random.next_1d(), random.next_1d()};
+        a.insert(e);
+        for (rgb* s : {&e.irradiance, &e.gradients.translation.x}) { *s = {s->z, s->x, s->y}; }
+        b.insert(e);
+    }
+    for (int i = 0; i < 100; ++i) {
+        const vec3<float> p{random.next_1d(), random.next_1d(), 0};
+        const rgb x = a.lookup(p, up).irradiance;
+        CHECK(b.lookup(p, up).irradiance == rgb{x.z, x.x, x.y});
+    }
+}
+
+TEST_CASE("irradiance_cache: refuses options that make no sense, by name") {
+    CHECK_THROWS_AS(cache{0.f}, std::invalid_argument);
+    CHECK_THROWS_AS(cache{std::numeric_limits<float>::infinity()}, std::invalid_argument);
+    irradiance_cache_options o;
+    o.reach.accuracy = 0;
+    CHECK(refusal(o).find("accuracy") != std::string::npos);
+    o = {};
+    o.lookup.normal_limit = 10;
+    CHECK(refusal(o).find("radians") != std::string::npos);
+    o = {};
+    o.reach.maximum_radius = 1e-9;
+    CHECK(refusal(o).find("maximum_radius") != std::string::npos);
+}
