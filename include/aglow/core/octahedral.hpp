@@ -9,12 +9,13 @@
 
 namespace aglow {
 
-/// A unit direction in four bytes, off by at most 4e-5 rad: the octahedral map with 16 bits an axis
+/// A unit direction in four bytes, off by at most 6.5e-5 rad: the octahedral map with 16 bits an axis
 /// (Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit Vectors).
 class octahedral {
 public:
     octahedral() = default;
 
+    /// Expects `v` of any length but zero, finite.
     template <typename T>
     explicit octahedral(const vec3<T>& v) {
         const T sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
