@@ -31,8 +31,11 @@
 #include <aglow/concepts/surface.hpp>
 
 // containers: where things are
+#include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_median.hpp>
+#include <aglow/containers/kd_nearest_one.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/containers/kd_select.hpp>
 #include <aglow/containers/kd_tree.hpp>

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_select.hpp>
@@ -79,6 +80,11 @@ template <typename P, typename T>
     return away2 > 0 ? simd::rounded(away2 + spread2 + 2 * std::sqrt(away2) * std::sqrt(spread2)) : spread2;
 }
 
+template <typename U>
+void prefetch_all(const U& what) {
+    for (std::size_t i = 0; i < sizeof(U); i += 64) { simd::prefetch(reinterpret_cast<const char*>(&what) + i); }
+}
+
 template <typename T>
 void start(const kd_storage<T>& tree, kd_probe<T>& probe) {
     const auto top = static_cast<std::size_t>(tree.height);
@@ -126,23 +132,61 @@ bool advance(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, int goal) {
     }
 }
 
+/// Room for points found, in ascending order of slots; `room` counts without the sixteen more that a pack may touch.
+template <typename T>
+struct kd_list {
+    T* distances2;
+    std::uint32_t* slots;
+    std::uint32_t count, room;
+};
+
 /// Adds the points of the listed leaves that are closer than `bound`, until all leaves are done or the room is.
 template <typename P, typename T>
-void scan(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, kd_candidates<T>& found, std::uint32_t room) {
+void scan(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, kd_list<T>& found) {
     const P limit = P::all(bound);
     std::uint32_t count = found.count;
-    for (; probe.next[0] < probe.count[0] && count + kd_leaf_size <= room; ++probe.next[0]) {
+    for (; probe.next[0] < probe.count[0] && count + kd_leaf_size <= found.room; ++probe.next[0]) {
         const std::uint32_t i = probe.open[0][probe.next[0]];
         for (std::uint32_t at = 0; at < kd_leaf_size; at += simd::lanes) {
             const P d = point_distances2<P>(tree.leaves[i], at, probe.point);
             const std::uint32_t mask = P::less(d, limit);
-            P::compress(found.distances2.data() + count, d, mask);
-            P::compress_numbers(found.slots.data() + count, i * kd_leaf_size + at, mask);
+            P::compress(found.distances2 + count, d, mask);
+            P::compress_numbers(found.slots + count, i * kd_leaf_size + at, mask);
             count += static_cast<std::uint32_t>(std::popcount(mask));
         }
     }
     found.count = count;
 }
+
+/// Asks for all that the listed nodes of `level` hold.
+template <typename T>
+void prefetch_listed(const kd_storage<T>& tree, const kd_probe<T>& probe, int level) {
+    const auto l = static_cast<std::size_t>(level);
+    for (std::uint32_t i = probe.next[l]; i < probe.count[l]; ++i) {
+        const std::uint32_t n = probe.open[l][i];
+        if (level == 0) {
+            prefetch_all(tree.leaves[n]);
+        } else {
+            prefetch_all(tree.node(level, n));
+        }
+    }
+}
+
+}  // namespace aglow::detail
+
+namespace aglow {
+
+/// Accepts every item.
+struct kd_accept_all {
+    template <typename... Slot>
+    constexpr bool operator()(Slot...) const {
+        return true;
+    }
+};
+
+}  // namespace aglow
+
+namespace aglow::detail {
 
 /// Takes out the candidates from `first` on that the caller does not accept.
 template <typename T, typename Accept>
@@ -162,8 +206,10 @@ void collect(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T b
              Accept& accept) {
     while (advance<P>(tree, probe, bound, 0)) {
         const std::uint32_t before = found.count;
-        scan<P>(tree, probe, bound, found, found.capacity());
-        reject(found, before, accept);
+        kd_list<T> list{found.distances2.data(), found.slots.data(), before, found.capacity()};
+        scan<P>(tree, probe, bound, list);
+        found.count = list.count;
+        if constexpr (!std::is_same_v<std::remove_cv_t<Accept>, kd_accept_all>) { reject(found, before, accept); }
         if (found.count + kd_leaf_size > found.capacity()) {
             bound = std::min(bound, simd::next_above(keep_nearest<P>(tree, found, k, bound)));
         }

@@ -6,7 +6,9 @@
 // number of threads and the instruction set.
 #pragma once
 
-#include <cassert>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -16,10 +18,12 @@
 #include <ranges>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_nearest_one.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/numbers.hpp>
@@ -72,11 +76,6 @@ class kd_scratch {
     detail::kd_candidates<T> found_;
 };
 
-/// Accepts every item.
-struct kd_accept_all {
-    constexpr bool operator()(kd_slot) const { return true; }
-};
-
 /// Something that says whether the item of a slot may be found: `accept(slot)`. It is asked only about items within
 /// the radius, maybe more than once for one search; what it refuses counts neither towards k nor towards the radius.
 template <typename F>
@@ -97,9 +96,10 @@ public:
     /// A tree of nothing.
     kd_tree() = default;
 
-    /// A tree of `position(item)` for every item; positions that are not finite are left out and counted in
-    /// `dropped()`. The same tree for any executor. O(n log n), with room for 36 bytes more per point while it runs
-    /// (float). Throws std::length_error for 2^32 - 64 items or more.
+    /// A tree of `position(item)` for every item. Positions that are not finite, or so far out that squared distances
+    /// would not be (beyond 4e18 for float), are left out and counted in `dropped()`. The same tree for any executor.
+    /// O(n log n), with room for 36 bytes more per point while it runs (float). Throws std::length_error for 2^32 - 64
+    /// items or more.
     template <std::ranges::random_access_range Items, typename Position, Executor E = in_sequence>
         requires std::convertible_to<std::invoke_result_t<const Position&, std::ranges::range_reference_t<const Items>>,
                                      vec3<T>>
@@ -131,7 +131,7 @@ public:
     template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit>
     void nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
                  Visit&& visit) const {
-        nearest(points, k, scratch, reach, visit, [](std::size_t, kd_slot) { return true; });
+        nearest(points, k, scratch, reach, visit, kd_accept_all{});
     }
     template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit, std::predicate<std::size_t, kd_slot> Accept>
     void nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
@@ -151,12 +151,21 @@ private:
     using pack = simd::best<T>;
     static constexpr std::size_t group = 8;
 
-    /// Without an infinity, which -ffast-math does not know.
-    static T clamp(T radius2) { return std::min(radius2, std::numeric_limits<T>::max()); }
-
+    /// What a search for k within a reach comes down to; `count` is 0 where nothing can be found.
+    struct task {
+        std::uint32_t count;
+        T limit;
+    };
+    [[nodiscard]] task task_of(std::size_t k, kd_reach<T> reach) const {
+        const T limit = std::min(reach.radius2, std::numeric_limits<T>::max());
+        return {limit > 0 ? static_cast<std::uint32_t>(std::min<std::size_t>(k, size())) : 0, limit};
+    }
+    [[nodiscard]] T guess(const detail::kd_probe<T>& probe, task what, kd_reach<T> reach) const;
+    /// Brings searches side by side to where their leaves are listed and asked for.
+    void approach(std::span<detail::kd_probe<T>> probes, task what, kd_reach<T> reach, std::span<T> radius2) const;
     template <typename Accept>
-    kd_neighbours<T> finish(detail::kd_probe<T>& probe, std::size_t k, detail::kd_candidates<T>& found,
-                            kd_reach<T> reach, Accept& accept) const;
+    kd_neighbours<T> finish(detail::kd_probe<T>& probe, task what, T radius2, kd_reach<T> reach, std::size_t k,
+                            detail::kd_candidates<T>& found, Accept& accept) const;
 
     detail::kd_storage<T> tree_;
     std::size_t dropped_{0};
@@ -171,22 +180,21 @@ template <std::ranges::random_access_range Items, typename Position, Executor E>
         if (count >= std::numeric_limits<std::uint32_t>::max() - 64) {
             throw std::length_error("aglow::kd_tree: more items than a 32-bit slot can number");
         }
-        detail::kd_cloud<T> cloud;
-        cloud.resize(count);
+        const T farthest = std::sqrt(std::numeric_limits<T>::max()) / 4;
+        detail::kd_cloud<T> cloud{count};
         std::uint32_t kept = 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             const vec3<T> p = std::invoke(position, std::ranges::begin(items)[static_cast<std::ptrdiff_t>(i)]);
-            if (!is_finite(p.x) || !is_finite(p.y) || !is_finite(p.z)) { continue; }
+            if (!is_finite(p.x) || !is_finite(p.y) || !is_finite(p.z) || max_abs(p) > farthest) { continue; }
             cloud.at[0][kept] = p.x;
             cloud.at[1][kept] = p.y;
             cloud.at[2][kept] = p.z;
             cloud.index[kept++] = i;
         }
         dropped_ = count - kept;
-        detail::kd_cloud<T> spare;
-        spare.resize(kept);
+        detail::kd_cloud<T> spare{kept};
         tree_.shape(kept);
-        if (kept > 0) { detail::kd_builder<T>{tree_, cloud, spare}.build(run); }
+        if (kept > 0) { detail::kd_builder<pack>{tree_, cloud, spare}.build(run); }
     }
 
 template <typename T>
@@ -208,71 +216,122 @@ std::size_t kd_tree<T>::memory() const {
 }
 
 template <typename T>
+T kd_tree<T>::guess(const detail::kd_probe<T>& probe, task what, kd_reach<T> reach) const {
+    const T radius2 = reach.hint2 > 0 ? reach.hint2 * (1 + T(2.6) / std::sqrt(static_cast<T>(what.count)))
+                                      : detail::guess_radius2<pack>(tree_, probe, what.count);
+    return std::max(radius2, std::numeric_limits<T>::min());
+}
+
+template <typename T>
 template <typename Accept>
-kd_neighbours<T> kd_tree<T>::finish(detail::kd_probe<T>& probe, std::size_t k, detail::kd_candidates<T>& found,
-                                    kd_reach<T> reach, Accept& accept) const {
-    const auto wanted = static_cast<std::uint32_t>(std::min<std::size_t>(k, size()));
-    const T limit = clamp(reach.radius2);
-    found.count = 0;
-    if (wanted == 0 || !(limit > 0)) { return {{}, {}, reach.radius2}; }
-    found.reserve(2 * std::size_t{wanted} + 1024);
-    T guess;
-    if (reach.hint2 > 0) {
-        guess = reach.hint2 * (1 + T(2.6) / std::sqrt(static_cast<T>(wanted)));
-        probe.at_home = false;
-    } else {
-        detail::go_home<pack>(tree_, probe);
-        guess = detail::guess_radius2<pack>(tree_, probe, wanted);
-    }
-    guess = std::max(guess, std::numeric_limits<T>::min());
-    detail::start(tree_, probe);
-    T farthest = detail::find_nearest<pack>(tree_, probe, wanted, guess, limit, found, accept);
-    if (found.count < k) { farthest = reach.radius2; }
-    return {{found.slots.data(), found.count}, {found.distances2.data(), found.count}, farthest};
+kd_neighbours<T> kd_tree<T>::finish(detail::kd_probe<T>& probe, task what, T radius2, kd_reach<T> reach, std::size_t k,
+                                    detail::kd_candidates<T>& found, Accept& accept) const {
+    const T farthest = detail::find_nearest<pack>(tree_, probe, what.count, radius2, what.limit, found, accept);
+    return {{found.slots.data(), found.count},
+            {found.distances2.data(), found.count},
+            found.count < k ? reach.radius2 : farthest};
 }
 
 template <typename T>
 template <KdAccept Accept>
 kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
                                      Accept&& accept) const {
+    const task what = task_of(k, reach);
+    if (what.count == 0) { return {{}, {}, reach.radius2}; }
+    scratch.found_.reserve(2 * std::size_t{what.count} + 1024);
     detail::kd_probe<T>& probe = scratch.probes_.front();
     probe.point = point;
-    return finish(probe, k, scratch.found_, reach, accept);
+    probe.at_home = !(reach.hint2 > 0);
+    if (probe.at_home) { detail::go_home<pack>(tree_, probe); }
+    detail::start(tree_, probe);
+    return finish(probe, what, guess(probe, what, reach), reach, k, scratch.found_, accept);
 }
 
+// Eight searches go step by step together: while one waits for memory the others compute.
 template <typename T>
 template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit, std::predicate<std::size_t, kd_slot> Accept>
 void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
                          Visit&& visit, Accept&& accept) const {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        visit(i, nearest(points[i], k, scratch, reach, [&](kd_slot slot) { return accept(i, slot); }));
+    const task what = task_of(k, reach);
+    if (what.count == 0) {
+        for (std::size_t i = 0; i < points.size(); ++i) { visit(i, kd_neighbours<T>{{}, {}, reach.radius2}); }
+        return;
+    }
+    scratch.found_.reserve(2 * std::size_t{what.count} + 1024);
+    scratch.probes_.resize(group);
+    std::array<T, group> radius2;
+    for (std::size_t first = 0; first < points.size(); first += group) {
+        const std::size_t count = std::min(group, points.size() - first);
+        const std::span<detail::kd_probe<T>> probes{scratch.probes_.data(), count};
+        for (std::size_t i = 0; i < count; ++i) { probes[i].point = points[first + i]; }
+        approach(probes, what, reach, radius2);
+        for (std::size_t i = 0; i < count; ++i) {
+            if constexpr (std::is_same_v<std::remove_cvref_t<Accept>, kd_accept_all>) {
+                visit(first + i, finish(probes[i], what, radius2[i], reach, k, scratch.found_, accept));
+            } else {
+                const auto accepts = [&](kd_slot slot) { return accept(first + i, slot); };
+                visit(first + i, finish(probes[i], what, radius2[i], reach, k, scratch.found_, accepts));
+            }
+        }
+    }
+}
+
+template <typename T>
+void kd_tree<T>::approach(std::span<detail::kd_probe<T>> probes, task what, kd_reach<T> reach,
+                          std::span<T> radius2) const {
+    const bool hinted = reach.hint2 > 0;
+    for (detail::kd_probe<T>& probe : probes) {
+        probe.at_home = !hinted;
+        probe.home[static_cast<std::size_t>(tree_.height)] = 0;
+        detail::start(tree_, probe);
+    }
+    for (int level = hinted ? 0 : tree_.height; level > 0; --level) {
+        for (detail::kd_probe<T>& probe : probes) {
+            detail::step_home<pack>(tree_, probe, static_cast<std::size_t>(level));
+            if (level > 1) {
+                detail::prefetch_all(tree_.node(level - 1, probe.home[static_cast<std::size_t>(level - 1)]));
+            }
+        }
+    }
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        radius2[i] = std::min(guess(probes[i], what, reach), what.limit);
+        detail::advance<pack>(tree_, probes[i], radius2[i], 1);
+        detail::prefetch_listed(tree_, probes[i], 1);
+    }
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        detail::advance<pack>(tree_, probes[i], radius2[i], 0);
+        detail::prefetch_listed(tree_, probes[i], 0);
     }
 }
 
 template <typename T>
 template <KdAccept Accept>
 std::optional<kd_found<T>> kd_tree<T>::nearest_one(const vec3<T>& point, T radius2, Accept&& accept) const {
-    kd_scratch<T> scratch;
-    const kd_neighbours<T> found = nearest(point, 1, scratch, {radius2}, accept);
-    if (found.empty()) { return std::nullopt; }
-    return kd_found<T>{found.slots[0], found.distances2[0]};
+    const task what = task_of(1, {radius2});
+    if (what.count == 0) { return std::nullopt; }
+    detail::kd_probe<T> probe;
+    probe.point = point;
+    const detail::kd_best<T> best = detail::find_nearest_one<pack>(tree_, probe, what.limit, accept);
+    if (!best.found) { return std::nullopt; }
+    return kd_found<T>{best.slot, best.distance2};
 }
 
 template <typename T>
 template <std::invocable<kd_slot, T> Visit>
 void kd_tree<T>::within(const vec3<T>& point, T radius2, Visit&& visit) const {
-    if (empty()) { return; }
+    constexpr std::uint32_t room = 512;
+    const task what = task_of(1, {radius2});
+    if (what.count == 0) { return; }
     detail::kd_probe<T> probe;
     probe.point = point;
     probe.at_home = false;
     detail::start(tree_, probe);
-    detail::kd_candidates<T> found;
-    found.reserve(1024);
-    const T bound = clamp(radius2);
-    while (detail::advance<pack>(tree_, probe, bound, 0)) {
-        detail::scan<pack>(tree_, probe, bound, found, found.capacity());
-        for (std::uint32_t i = 0; i < found.count; ++i) { visit(found.slots[i], found.distances2[i]); }
-        found.count = 0;
+    T distances2[room + simd::lanes];
+    kd_slot slots[room + simd::lanes];
+    while (detail::advance<pack>(tree_, probe, what.limit, 0)) {
+        detail::kd_list<T> found{distances2, slots, 0, room};
+        detail::scan<pack>(tree_, probe, what.limit, found);
+        for (std::uint32_t i = 0; i < found.count; ++i) { visit(slots[i], distances2[i]); }
     }
 }
 

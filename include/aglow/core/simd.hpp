@@ -23,6 +23,13 @@ template <std::floating_point T>
     return std::bit_cast<T>(static_cast<bits>(std::bit_cast<bits>(x) + 1));
 }
 
+/// Asks for the memory at `address` before it is needed.
+inline void prefetch([[maybe_unused]] const void* address) {
+#if defined(__GNUC__)
+    __builtin_prefetch(address);
+#endif
+}
+
 /// `x`, rounded to a `T` and hidden from the optimiser, which else may fuse a product with the sum it goes into or
 /// reorder sums (-ffp-contract, -ffast-math): what stands in a `rounded` has the same bits under every flag.
 template <typename T>
@@ -105,6 +112,11 @@ struct plain {
         T most = a.v[0];
         for (unsigned i = 1; i < lanes; ++i) { most = most < a.v[i] ? a.v[i] : most; }
         return most;
+    }
+    /// `a` with the largest number there is in one lane.
+    static plain without(plain a, std::uint32_t lane) {
+        a.v[lane] = std::numeric_limits<T>::max();
+        return a;
     }
     /// Writes the lanes of `mask` one after another. All sixteen places from `to` may be overwritten.
     static void compress(T* to, const plain& a, std::uint32_t mask) { squeeze(to, a.v, mask); }

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -42,6 +43,12 @@ struct avx2 {
         __m128 n = _mm_max_ps(_mm256_castps256_ps128(m), _mm256_extractf128_ps(m, 1));
         n = _mm_max_ps(n, _mm_movehl_ps(n, n));
         return _mm_cvtss_f32(_mm_max_ss(n, _mm_shuffle_ps(n, n, 1)));
+    }
+    static avx2 without(avx2 p, std::uint32_t lane) {
+        alignas(32) float numbers[16];
+        store(numbers, p);
+        numbers[lane] = std::numeric_limits<float>::max();
+        return load(numbers);
     }
     static void compress(float* to, avx2 p, std::uint32_t mask) {
         const std::uint32_t low = mask & 0xffu;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #if defined(__AVX512F__)
 #include <immintrin.h>
@@ -26,16 +27,20 @@ struct avx512 {
     static std::uint32_t less(avx512 a, avx512 b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ); }
     static std::uint32_t equal(avx512 a, avx512 b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_EQ_OQ); }
     static float smallest(avx512 a) {
-        const __m256 m = _mm256_min_ps(_mm512_castps512_ps256(a.v), upper(a));
+        const __m256 m = _mm256_min_ps(half<0>(a), half<1>(a));
         __m128 n = _mm_min_ps(_mm256_castps256_ps128(m), _mm256_extractf128_ps(m, 1));
         n = _mm_min_ps(n, _mm_movehl_ps(n, n));
         return _mm_cvtss_f32(_mm_min_ss(n, _mm_shuffle_ps(n, n, 1)));
     }
     static float largest(avx512 a) {
-        const __m256 m = _mm256_max_ps(_mm512_castps512_ps256(a.v), upper(a));
+        const __m256 m = _mm256_max_ps(half<0>(a), half<1>(a));
         __m128 n = _mm_max_ps(_mm256_castps256_ps128(m), _mm256_extractf128_ps(m, 1));
         n = _mm_max_ps(n, _mm_movehl_ps(n, n));
         return _mm_cvtss_f32(_mm_max_ss(n, _mm_shuffle_ps(n, n, 1)));
+    }
+    static avx512 without(avx512 a, std::uint32_t lane) {
+        const auto rest = static_cast<__mmask16>(~(1u << lane));
+        return {_mm512_mask_mov_ps(_mm512_set1_ps(std::numeric_limits<float>::max()), rest, a.v)};
     }
     // Packs in a register and stores all of it: a compressing store is microcode on some machines.
     static void compress(float* to, avx512 a, std::uint32_t mask) {
@@ -51,8 +56,9 @@ struct avx512 {
     }
 
 private:
-    static __m256 upper(avx512 a) {
-        return _mm256_castpd_ps(_mm512_maskz_extractf64x4_pd(0xf, _mm512_castps_pd(a.v), 1));
+    template <int I>
+    static __m256 half(avx512 a) {
+        return _mm256_castpd_ps(_mm512_maskz_extractf64x4_pd(0xf, _mm512_castps_pd(a.v), I));
     }
     static __m512 rounded(__m512 x) {
         asm("" : "+v"(x));

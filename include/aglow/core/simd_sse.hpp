@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 #if defined(__SSE4_1__)
 #include <smmintrin.h>
@@ -57,6 +58,12 @@ struct sse {
         __m128 n = _mm_max_ps(_mm_max_ps(p.a, p.b), _mm_max_ps(p.c, p.d));
         n = _mm_max_ps(n, _mm_movehl_ps(n, n));
         return _mm_cvtss_f32(_mm_max_ss(n, _mm_shuffle_ps(n, n, 1)));
+    }
+    static sse without(const sse& p, std::uint32_t lane) {
+        alignas(32) float numbers[16];
+        store(numbers, p);
+        numbers[lane] = std::numeric_limits<float>::max();
+        return load(numbers);
     }
     static void compress(float* to, const sse& p, std::uint32_t mask) {
         compress(to, _mm_castps_si128(p.a), _mm_castps_si128(p.b), _mm_castps_si128(p.c), _mm_castps_si128(p.d), mask);

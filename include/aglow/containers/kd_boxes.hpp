@@ -1,0 +1,88 @@
+// The boxes of a kd-tree's nodes and how crowded they are, made from the leaves upwards.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <aglow/containers/kd_layout.hpp>
+#include <aglow/core/bounds.hpp>
+#include <aglow/core/numbers.hpp>
+#include <aglow/core/simd.hpp>
+
+namespace aglow::detail {
+
+/// Tight box of the points of a leaf of which `count` are there.
+template <typename P, typename T>
+[[nodiscard]] bounds<T> leaf_box(const kd_leaf<T>& leaf, std::uint32_t count) {
+    bounds<T> box;
+    if (count < kd_leaf_size) {
+        for (std::uint32_t i = 0; i < count; ++i) { box.add({leaf.x[i], leaf.y[i], leaf.z[i]}); }
+        return box;
+    }
+    P low[3]{P::load(leaf.x), P::load(leaf.y), P::load(leaf.z)};
+    P high[3]{low[0], low[1], low[2]};
+    for (std::uint32_t i = simd::lanes; i < kd_leaf_size; i += simd::lanes) {
+        const P v[3]{P::load(leaf.x + i), P::load(leaf.y + i), P::load(leaf.z + i)};
+        for (int a = 0; a < 3; ++a) {
+            low[a] = P::min(low[a], v[a]);
+            high[a] = P::max(high[a], v[a]);
+        }
+    }
+    box.low = {P::smallest(low[0]), P::smallest(low[1]), P::smallest(low[2])};
+    box.high = {P::largest(high[0]), P::largest(high[1]), P::largest(high[2])};
+    return box;
+}
+
+/// Box around the first `count` children of a node.
+template <typename T>
+[[nodiscard]] bounds<T> node_box(const kd_node<T>& node, std::uint32_t count) {
+    bounds<T> box;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        box.add({node.low_x[i], node.low_y[i], node.low_z[i]});
+        box.add({node.high_x[i], node.high_y[i], node.high_z[i]});
+    }
+    return box;
+}
+
+/// How crowded a box of `count` points is, taken for even along the sides that it has.
+template <typename T>
+[[nodiscard]] kd_density<T> density_of(const bounds<T>& box, std::uint32_t count) {
+    const vec3<T> e = box.extent();
+    std::array<T, 3> side{e.x, e.y, e.z};
+    std::sort(side.begin(), side.end());
+    const T n = static_cast<T>(count);
+    const T radius = std::cbrt(side[0]) * std::cbrt(side[1]) * std::cbrt(side[2]) * std::cbrt(T(0.75) / (pi<T> * n));
+    return {square(side[2] / (2 * n)), side[2] / n * side[1] / pi<T>, square(radius)};
+}
+
+/// Sets the boxes of node i of `level`, whose children are finished, and how crowded it is if those are leaves.
+template <typename P, typename T>
+void finish_node(kd_storage<T>& tree, int level, std::uint32_t i) {
+    kd_node<T>& node = tree.node(level, i);
+    const std::uint32_t children = std::min(kd_fan, kd_blocks(tree.size, kd_capacity(level - 1)) - i * kd_fan);
+    for (std::uint32_t lane = 0; lane < kd_fan; ++lane) {
+        const std::uint32_t child = i * kd_fan + lane;
+        bounds<T> box;
+        box.high = box.low;
+        if (lane < children && level == 1) {
+            box = leaf_box<P>(tree.leaves[child], std::min(kd_leaf_size, tree.size - child * kd_leaf_size));
+        } else if (lane < children) {
+            const std::uint32_t below = kd_blocks(tree.size, kd_capacity(level - 2)) - child * kd_fan;
+            box = node_box(tree.node(level - 1, child), std::min(kd_fan, below));
+        }
+        node.low_x[lane] = box.low.x;
+        node.low_y[lane] = box.low.y;
+        node.low_z[lane] = box.low.z;
+        node.high_x[lane] = box.high.x;
+        node.high_y[lane] = box.high.y;
+        node.high_z[lane] = box.high.z;
+    }
+    if (level > 1) { return; }
+    const auto capacity = static_cast<std::uint32_t>(kd_capacity(1));
+    tree.densities[i] = density_of(node_box(node, children), std::min(capacity, tree.size - i * capacity));
+}
+
+}  // namespace aglow::detail

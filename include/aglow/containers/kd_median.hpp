@@ -1,0 +1,121 @@
+// The exact k-th of many numbers, from a sorted sample that brackets it: how a kd-tree finds where to cut.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include <aglow/containers/kd_select.hpp>
+#include <aglow/core/simd.hpp>
+
+namespace aglow::detail {
+
+/// A number of many, how many are less and how many are equal.
+template <typename T>
+struct kd_rank {
+    T value;
+    std::uint32_t less, equal;
+};
+
+/// Finds numbers by rank; keeps the room it needs.
+template <typename P>
+class kd_median {
+    using T = typename P::scalar;
+
+public:
+    /// Room for `most` numbers.
+    explicit kd_median(std::uint32_t most) {
+        for (auto& room : rooms_) { room = std::make_unique_for_overwrite<T[]>(most + 2 * simd::lanes); }
+    }
+
+    /// The k-th smallest, k from 1, of `count` numbers, of which only whole packs are read: what stands behind the last
+    /// in its pack must sort last.
+    kd_rank<T> operator()(const T* numbers, std::uint32_t count, std::uint32_t k) {
+        std::uint32_t less = 0;
+        for (unsigned side = 0; count > few; side ^= 1u) {
+            const auto [low, high] = bracket(numbers, count, k);
+            T* inside = rooms_[side].get();
+            kd_bracket cut;
+            if (low < high) {
+                cut = cut_bracket<P>(numbers, count, low, high, inside);
+                if (k <= cut.below) {
+                    cut = cut_bracket<P>(numbers, count, lowest, low, inside);
+                } else if (k > cut.below + cut.inside) {
+                    cut = cut_bracket<P>(numbers, count, high, highest, inside);
+                }
+            } else {
+                const kd_rank<T> tie = rank_of(numbers, count, low, less);
+                const std::uint32_t below = tie.less - less;
+                if (below < k && k <= below + tie.equal) { return tie; }
+                cut = k <= below ? cut_bracket<P>(numbers, count, lowest, low, inside)
+                                 : cut_above(numbers, count, low, inside);
+            }
+            less += cut.below;
+            k -= cut.below;
+            count = cut.inside;
+            numbers = inside;
+            pad<P>(inside, count);
+        }
+        return rank_of(numbers, count, kth_by_pairs<P>(numbers, count, k), less);
+    }
+
+private:
+    static constexpr T lowest = std::numeric_limits<T>::lowest();
+    static constexpr T highest = std::numeric_limits<T>::max();
+    static constexpr std::uint32_t few = 64;
+    static constexpr std::uint32_t most_samples = 1024;
+
+    /// Two numbers of a sample between which the k-th is likely to lie.
+    std::array<T, 2> bracket(const T* numbers, std::uint32_t count, std::uint32_t k) {
+        const std::uint32_t samples = count >= 64 * most_samples ? most_samples : count >= 2048 ? 256 : 64;
+        const std::uint32_t step = count / samples;
+        for (std::uint32_t i = 0; i < samples; ++i) { sample_[i] = numbers[i * step + step / 2]; }
+        const double share = static_cast<double>(k) / count;
+        const double slack = 2.2 * std::sqrt(samples * share * (1 - share)) + 1;
+        const auto clamp = [&](double at) {
+            return static_cast<std::uint32_t>(std::clamp(at, 1.0, static_cast<double>(samples)));
+        };
+        const std::uint32_t low = clamp(samples * share - slack);
+        const std::uint32_t high = clamp(samples * share + slack);
+        if (samples <= few) {
+            return {kth_by_pairs<P>(sample_.data(), samples, low), kth_by_pairs<P>(sample_.data(), samples, high)};
+        }
+        std::sort(sample_.begin(), sample_.begin() + samples);
+        return {sample_[low - 1], sample_[high - 1]};
+    }
+
+    static kd_rank<T> rank_of(const T* numbers, std::uint32_t count, T value, std::uint32_t less) {
+        kd_rank<T> rank{value, less, 0};
+        const P pivot = P::all(value);
+        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+            const P v = P::load(numbers + i);
+            rank.less += static_cast<std::uint32_t>(std::popcount(P::less(v, pivot)));
+            rank.equal += static_cast<std::uint32_t>(std::popcount(P::equal(v, pivot)));
+        }
+        return rank;
+    }
+
+    /// Copies the numbers larger than `value`.
+    static kd_bracket cut_above(const T* numbers, std::uint32_t count, T value, T* to) {
+        kd_bracket cut{0, 0};
+        const P pivot = P::all(value);
+        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+            const P v = P::load(numbers + i);
+            const std::uint32_t here = count - i < simd::lanes ? (1u << (count - i)) - 1 : 0xffffu;
+            const std::uint32_t above = P::less(pivot, v) & here;
+            P::compress(to + cut.inside, v, above);
+            cut.inside += static_cast<std::uint32_t>(std::popcount(above));
+            cut.below += static_cast<std::uint32_t>(std::popcount(here & ~above));
+        }
+        return cut;
+    }
+
+    std::array<std::unique_ptr<T[]>, 2> rooms_;
+    std::array<T, most_samples + simd::lanes> sample_;
+};
+
+}  // namespace aglow::detail
