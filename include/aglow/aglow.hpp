@@ -85,3 +85,19 @@
 #include <aglow/algorithms/trace_photons.hpp>
 
 // report: how good is it
+#include <aglow/report/audit.hpp>
+#include <aglow/report/audit_result.hpp>
+#include <aglow/report/audit_sample.hpp>
+#include <aglow/report/bootstrap.hpp>
+#include <aglow/report/confidence.hpp>
+#include <aglow/report/conformal.hpp>
+#include <aglow/report/convergence.hpp>
+#include <aglow/report/decay.hpp>
+#include <aglow/report/distributions.hpp>
+#include <aglow/report/image_error.hpp>
+#include <aglow/report/image_view.hpp>
+#include <aglow/report/probe.hpp>
+#include <aglow/report/quantiles.hpp>
+#include <aglow/report/render_until.hpp>
+#include <aglow/report/running_mean.hpp>
+#include <aglow/report/tails.hpp>

@@ -1,0 +1,313 @@
+// The probes of one audit: which pixels, how many samples, and the plain numbers made of them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <vector>
+
+#include <aglow/core/parallel.hpp>
+#include <aglow/core/random.hpp>
+#include <aglow/report/audit_result.hpp>
+#include <aglow/report/conformal.hpp>
+#include <aglow/report/probe.hpp>
+#include <aglow/report/running_mean.hpp>
+
+namespace aglow::detail {
+
+[[nodiscard]] inline std::vector<double> clipped(std::span<const double> values) {
+    std::vector<double> all(values.begin(), values.end());
+    for (double& x : all) { x = std::min(x, 1.0); }
+    return all;
+}
+
+/// Half of the pixels are drawn uniformly and half in proportion to the guess of their relative error, so that few
+/// pixels with large errors are not missed; weights make both one unbiased sample (Veach & Guibas 1995, balance
+/// heuristic).
+class guess_shares {
+public:
+    /// Without guesses all pixels are drawn uniformly and weigh 1.
+    template <std::floating_point T>
+    guess_shares(const audited_picture<T>& picture, double floor) {
+        if (picture.guess.empty()) { return; }
+        double sum = 0;
+        sums_.reserve(picture.image.pixels());
+        for (std::size_t i = 0; i < picture.image.pixels(); ++i) {
+            sum += usable_guess(picture, i, floor) / (std::max(picture.image.gray(i), 0.0) + floor);
+            sums_.push_back(sum);
+        }
+        if (!(sum > 0) || !is_finite(sum)) { sums_.clear(); }
+    }
+
+    /// The pixel at `place` in [0, 1) of the guesses laid end to end.
+    [[nodiscard]] std::size_t pixel_at(double place) const {
+        const auto found = std::upper_bound(sums_.begin(), sums_.end(), place * sums_.back());
+        return std::min(sums_.size() - 1, static_cast<std::size_t>(found - sums_.begin()));
+    }
+
+    /// Uniform density over that of the pixel's drawing; never above 2.
+    [[nodiscard]] double weight(std::size_t pixel) const {
+        if (sums_.empty()) { return 1; }
+        const double share = sums_[pixel] - (pixel > 0 ? sums_[pixel - 1] : 0);
+        return 1 / (0.5 + 0.5 * share / sums_.back() * static_cast<double>(sums_.size()));
+    }
+
+    [[nodiscard]] bool uniform() const { return sums_.empty(); }
+
+private:
+    std::vector<double> sums_{};
+};
+
+/// Draws the probes of an audit and turns them into one number each, per statement. Expects options that were checked.
+template <std::floating_point T>
+class audit_sample {
+public:
+    audit_sample(const audited_picture<T>& picture, const audit_options& options)
+        : picture_{picture},
+          options_{options},
+          mean_{mean_value(picture.image)},
+          floor_{options.dark * std::abs(mean_)},
+          shares_{picture, floor_} {}
+
+    /// A pilot tells how many samples a probe needs; then the probes, and more for classes that got too few.
+    template <Probe P, Executor E>
+    void draw(const P& probe, const E& run) {
+        per_batch_ = pilot(probe, run);
+        uniform_ = shares_.uniform() ? options_.probes : options_.probes / 2;
+        records_ = draw_all(probe, run, main_pixels(), per_batch_, part_main);
+        extra_ = draw_all(probe, run, pixels_of_rare_classes(), per_batch_, part_extra);
+    }
+
+    [[nodiscard]] double mean() const { return mean_; }
+    [[nodiscard]] double dark_floor() const { return floor_; }
+    [[nodiscard]] std::size_t probes() const { return records_.size() + extra_.size(); }
+    [[nodiscard]] std::size_t samples_per_probe() const { return per_batch_ * probe_batches; }
+    [[nodiscard]] std::size_t samples() const { return samples_; }
+    [[nodiscard]] std::size_t broken() const { return broken_; }
+
+    /// Weighted relative error of each probed pixel, averaged over channels, with most of the probe's own noise taken
+    /// out: their mean is the mean relative error of the picture.
+    [[nodiscard]] std::vector<double> mean_errors() const {
+        return each(records_.size(), [&](const probe_record& r) {
+            const double gap = less_noisy([&](unsigned chosen) { return error(r, chosen); });
+            return shares_.weight(r.pixel) * (gap + denominator_noise2(r));
+        });
+    }
+
+    /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in: never too small on
+    /// average.
+    [[nodiscard]] std::vector<double> plain_errors() const {
+        return each(uniform_, [&](const probe_record& r) { return error(r, every_batch); });
+    }
+
+    /// Weighted B−U of each probed pixel, of the mean of its channels.
+    [[nodiscard]] std::vector<double> gaps() const {
+        return each(records_.size(), [&](const probe_record& r) {
+            return shares_.weight(r.pixel) * (picture_.image.gray(r.pixel) - gray(r, every_batch));
+        });
+    }
+
+    /// How slowly the probes' noise falls with their samples, as the 1/α of a stable law: 1/2 for a finite variance.
+    /// Compares the differences of single batches with those of halves, which average four times as many samples.
+    [[nodiscard]] double tail_index() const {
+        double singles = 0;
+        double halves = 0;
+        for (const probe_record& r : records_) {
+            const double scale = 1 / (std::max(gray(r, every_batch), 0.0) + floor_);
+            singles += scale * mean_over_choices<2>([&](unsigned pair) {
+                           const unsigned one = pair & (~pair + 1);
+                           return std::abs(gray(r, one) - gray(r, pair ^ one));
+                       });
+            halves += scale * mean_over_choices<4>(
+                                  [&](unsigned half) { return std::abs(gray(r, half) - gray(r, half ^ every_batch)); });
+        }
+        return halves > 0 ? 1 - std::log2(singles / halves) / 2 : 0;
+    }
+
+    /// The scale of each class that turns guesses into error bars.
+    [[nodiscard]] std::vector<class_scale> scales(double confidence) const {
+        std::vector<const probe_record*> all;
+        std::vector<std::uint32_t> classes;
+        const auto add = [&](const probe_record& r) {
+            all.push_back(&r);
+            classes.push_back(class_of(picture_, r.pixel));
+        };
+        std::for_each(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(uniform_), add);
+        std::for_each(extra_.begin(), extra_.end(), add);
+        std::vector<class_scale> found;
+        class_lists{classes, options_.class_probes}.for_each(
+            [&](std::uint32_t id, std::span<const std::size_t> members, bool merged) {
+                found.push_back({id, bar_scale(all, members, confidence), members.size(), merged});
+            });
+        return found;
+    }
+
+private:
+    static constexpr std::size_t pilot_probes = 32;
+    static constexpr std::uint64_t part_main = 0;  // parts of the audit's random numbers; pilots are 2, 3, ...
+    static constexpr std::uint64_t part_extra = 1;
+    static constexpr unsigned every_batch = (1u << probe_batches) - 1;
+
+    [[nodiscard]] double gray(const probe_record& r, unsigned chosen) const {
+        double sum = 0;
+        for (std::size_t c = 0; c < r.channels; ++c) { sum += r.mean(chosen, c); }
+        return sum / static_cast<double>(r.channels);
+    }
+
+    /// Relative error by the chosen batches, over the best estimate of the truth: a few dark batches cannot blow it up.
+    [[nodiscard]] double error(const probe_record& r, unsigned chosen) const {
+        double sum = 0;
+        for (std::size_t c = 0; c < r.channels; ++c) {
+            const double gap = std::abs(picture_.image.at(r.pixel, c) - r.mean(chosen, c));
+            sum += gap > 0 ? gap / below(r, c) : 0;
+        }
+        return sum / static_cast<double>(r.channels);
+    }
+
+    [[nodiscard]] double below(const probe_record& r, std::size_t c) const { return std::max(r.mean(c), 0.0) + floor_; }
+
+    /// Relative variance of the best estimate: what its noise in the denominator can take off the mean error at most.
+    [[nodiscard]] double denominator_noise2(const probe_record& r) const {
+        double sum = 0;
+        for (std::size_t c = 0; c < r.channels; ++c) {
+            const double variance = r.batch_variance(c) / probe_batches;
+            sum += variance > 0 ? std::min(1.0, variance / square(below(r, c))) : 0;
+        }
+        return sum / static_cast<double>(r.channels);
+    }
+
+    template <typename Of>
+    [[nodiscard]] std::vector<double> each(std::size_t first, const Of& of) const {
+        std::vector<double> values(first);
+        for (std::size_t i = 0; i < first; ++i) { values[i] = of(records_[i]); }
+        return values;
+    }
+
+    /// Conformal quantile of |B−U|/guess over `members`, with three quarters of what the probes' noise adds to it taken
+    /// out: its square grows about as the noise's variance, which is twice as large for halves of the batches. (All of
+    /// it taken out, small classes fell below their coverage.)
+    [[nodiscard]] double bar_scale(std::span<const probe_record* const> all, std::span<const std::size_t> members,
+                                   double confidence) const {
+        const auto at = [&](unsigned chosen) {
+            std::vector<double> scores;
+            for (const std::size_t i : members) {
+                const probe_record& r = *all[i];
+                const double gap = std::abs(picture_.image.gray(r.pixel) - gray(r, chosen));
+                scores.push_back(gap / usable_guess(picture_, r.pixel, floor_));
+            }
+            return conformal_quantile(scores, confidence).value_or(std::numeric_limits<double>::infinity());
+        };
+        const double whole = at(every_batch);
+        if (!is_finite(whole)) { return whole; }
+        const double halves2 = mean_over_choices<4>([&](unsigned half) { return square(at(half)); });
+        return std::sqrt(std::max(1.75 * whole * whole - 0.75 * halves2, 0.25 * whole * whole));
+    }
+
+    [[nodiscard]] path_key key(std::uint64_t part, std::size_t i) const {
+        return {options_.seed, mix(options_.stream, part), static_cast<std::uint64_t>(i)};
+    }
+
+    /// A number in [0, 1) that belongs to probe `i` of `part`.
+    [[nodiscard]] double drawn_number(std::uint64_t part, std::size_t i) const {
+        return unit_interval<double>(mix(key(part, i), ~0u, purpose::audit));
+    }
+
+    [[nodiscard]] std::size_t drawn(std::uint64_t part, std::size_t i, std::size_t count) const {
+        return std::min(count - 1, static_cast<std::size_t>(drawn_number(part, i) * static_cast<double>(count)));
+    }
+
+    [[nodiscard]] std::vector<std::size_t> uniform_pixels(std::size_t count, std::uint64_t part) const {
+        std::vector<std::size_t> pixels(count);
+        for (std::size_t i = 0; i < count; ++i) { pixels[i] = drawn(part, i, picture_.image.pixels()); }
+        return pixels;
+    }
+
+    /// Uniform ones first, then those drawn in proportion to the guess.
+    [[nodiscard]] std::vector<std::size_t> main_pixels() const {
+        std::vector<std::size_t> pixels = uniform_pixels(options_.probes, part_main);
+        for (std::size_t i = uniform_; i < pixels.size(); ++i) {
+            pixels[i] = shares_.pixel_at(drawn_number(part_main, i));
+        }
+        return pixels;
+    }
+
+    /// Further pixels of classes that the uniform draw hit too seldom.
+    [[nodiscard]] std::vector<std::size_t> pixels_of_rare_classes() const {
+        std::vector<std::size_t> pixels;
+        if (picture_.classes.empty()) { return pixels; }
+        std::map<std::uint32_t, std::size_t> hits;
+        for (std::size_t i = 0; i < uniform_; ++i) { ++hits[picture_.classes[records_[i].pixel]]; }
+        std::map<std::uint32_t, std::vector<std::size_t>> members;
+        for (std::size_t i = 0; i < picture_.classes.size(); ++i) {
+            if (hits[picture_.classes[i]] < options_.class_probes) { members[picture_.classes[i]].push_back(i); }
+        }
+        for (const auto& [id, own] : members) {
+            for (std::size_t k = hits[id]; k < options_.class_probes; ++k) {
+                pixels.push_back(own[drawn(part_extra, pixels.size(), own.size())]);
+            }
+        }
+        return pixels;
+    }
+
+    template <Probe P, Executor E>
+    [[nodiscard]] std::vector<probe_record> draw_all(const P& probe, const E& run,
+                                                     const std::vector<std::size_t>& pixels, std::size_t per_batch,
+                                                     std::uint64_t part) {
+        std::vector<probe_record> records(pixels.size());
+        run(pixels.size(), [&](std::size_t i) {
+            records[i] = draw_probe(probe, pixels[i], picture_.image.channels, per_batch, key(part, i));
+        });
+        for (const probe_record& r : records) {
+            samples_ += r.samples;
+            broken_ += r.broken;
+        }
+        return records;
+    }
+
+    /// Samples per batch for the wanted noise. A few single samples say little of a skewed noise, so the pilot is
+    /// repeated with larger batches until these are within a factor 8 of what they call for.
+    template <Probe P, Executor E>
+    [[nodiscard]] std::size_t pilot(const P& probe, const E& run) {
+        std::size_t batch = 1;
+        for (std::uint64_t round = 2;; ++round) {
+            const double wanted =
+                wanted_batch(draw_all(probe, run, uniform_pixels(pilot_probes, round), batch, round), batch);
+            const double most = affordable_batch();
+            const double next = std::clamp(std::ceil(std::min(wanted, most)), 1.0, 1e9);
+            if (wanted <= 8 * static_cast<double>(batch) || next < wanted) { return static_cast<std::size_t>(next); }
+            batch = static_cast<std::size_t>(std::ceil(next / 4));
+        }
+    }
+
+    /// Samples per batch that give a probe the wanted relative standard error, judged by a pilot of batches of `batch`.
+    [[nodiscard]] double wanted_batch(const std::vector<probe_record>& pilots, std::size_t batch) const {
+        running_mean spread;
+        for (const probe_record& r : pilots) {
+            for (std::size_t c = 0; c < r.channels; ++c) { spread.add(std::sqrt(r.batch_variance(c)) / below(r, c)); }
+        }
+        return static_cast<double>(batch) / probe_batches * square(spread.mean() / (options_.noise * options_.target));
+    }
+
+    [[nodiscard]] double affordable_batch() const {
+        const double left = static_cast<double>(options_.budget) - static_cast<double>(samples_);
+        return std::floor(left / static_cast<double>(options_.probes * probe_batches));
+    }
+
+    audited_picture<T> picture_;
+    audit_options options_;
+    double mean_;
+    double floor_;
+    guess_shares shares_;
+    std::size_t uniform_{0};
+    std::size_t per_batch_{1};
+    std::size_t samples_{0};
+    std::size_t broken_{0};
+    std::vector<probe_record> records_{};
+    std::vector<probe_record> extra_{};
+};
+
+}  // namespace aglow::detail

@@ -1,0 +1,86 @@
+// From a rough guess of each pixel's error and a few true errors to error bars that hold as often as they say.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <aglow/report/quantiles.hpp>
+
+namespace aglow {
+
+/// The ⌈(n+1)·confidence⌉-th smallest score: a fresh score of the same kind exceeds it with probability at most
+/// 1 - `confidence` (Vovk, Gammerman & Shafer 2005). Nothing where that would be beyond the largest, below 19 scores
+/// for 95 %.
+[[nodiscard]] inline std::optional<double> conformal_quantile(std::span<const double> scores, double confidence) {
+    const auto rank = static_cast<std::size_t>(std::ceil(static_cast<double>(scores.size() + 1) * confidence));
+    if (rank == 0 || rank > scores.size()) { return std::nullopt; }
+    std::vector<double> order(scores.begin(), scores.end());
+    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rank - 1), order.end());
+    return order[rank - 1];
+}
+
+/// What turns guesses of one class of pixels into error bars: bar = `scale` · guess.
+struct class_scale {
+    std::uint32_t id{0};
+    double scale{0};        ///< infinite where there were too few scores to say anything
+    std::size_t scores{0};  ///< how many scores `scale` rests on
+    bool merged{false};     ///< too few of its own, so all classes' scores were taken together
+};
+
+/// Puts each index of `classes` into the list of its class; classes of fewer than `least` share one list of everything.
+class class_lists {
+public:
+    class_lists(std::span<const std::uint32_t> classes, std::size_t least) {
+        for (std::size_t i = 0; i < classes.size(); ++i) {
+            own_[classes[i]].push_back(i);
+            everything_.push_back(i);
+        }
+        for (const auto& [id, members] : own_) {
+            if (members.size() < least) { merged_.push_back(id); }
+        }
+    }
+
+    /// Calls `visit(id, members, merged)` for every class in rising order of id.
+    template <typename Visit>
+    void for_each(const Visit& visit) const {
+        for (const auto& [id, members] : own_) {
+            const bool merged = std::binary_search(merged_.begin(), merged_.end(), id);
+            visit(id, std::span<const std::size_t>{merged ? everything_ : members}, merged);
+        }
+    }
+
+private:
+    std::map<std::uint32_t, std::vector<std::size_t>> own_{};
+    std::vector<std::size_t> everything_{};
+    std::vector<std::uint32_t> merged_{};
+};
+
+/// One scale a class (Mondrian conformal prediction); `scores[i]` = |error| / guess of a randomly drawn pixel of class
+/// `classes[i]`. Classes with fewer than `least` scores are merged. In rising order of id.
+[[nodiscard]] inline std::vector<class_scale> conformal_scales(std::span<const double> scores,
+                                                               std::span<const std::uint32_t> classes,
+                                                               double confidence, std::size_t least = 60) {
+    std::vector<class_scale> scales;
+    class_lists{classes, least}.for_each([&](std::uint32_t id, std::span<const std::size_t> members, bool merged) {
+        std::vector<double> own;
+        for (const std::size_t i : members) { own.push_back(scores[i]); }
+        const double scale = conformal_quantile(own, confidence).value_or(std::numeric_limits<double>::infinity());
+        scales.push_back({id, scale, own.size(), merged});
+    });
+    return scales;
+}
+
+/// The scale of class `id`; nothing for a class that is not in the list.
+[[nodiscard]] inline std::optional<double> scale_of(std::span<const class_scale> scales, std::uint32_t id) {
+    const auto found = std::find_if(scales.begin(), scales.end(), [&](const class_scale& s) { return s.id == id; });
+    return found == scales.end() ? std::nullopt : std::optional{found->scale};
+}
+
+}  // namespace aglow

@@ -1,0 +1,102 @@
+// An error that falls with work towards a floor: a + b · work^-p, and what it promises.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace aglow {
+
+/// An error measured after some work, with the standard error of the measurement.
+struct measured_error {
+    double work{0};
+    double error{0};
+    double deviation{0};
+};
+
+/// error = `floor` + `amplitude` · work^-`exponent`.
+struct decay_fit {
+    double floor{0};
+    double amplitude{0};
+    double exponent{0.5};
+    double floor_low{0};  ///< smallest floor that the measurements allow (three standard deviations)
+    double misfit{0};     ///< χ² of the fit
+
+    [[nodiscard]] double at(double work) const { return floor + amplitude * std::pow(work, -exponent); }
+
+    /// The work after which the error is `target`; infinite where the floor is above it.
+    [[nodiscard]] double work_to(double target) const {
+        if (target <= floor) { return std::numeric_limits<double>::infinity(); }
+        return std::pow(amplitude / (target - floor), 1 / exponent);
+    }
+};
+
+namespace detail {
+
+struct decay_candidate {
+    decay_fit fit{};
+    double floor_deviation{0};
+};
+
+/// Weighted least squares of floor and amplitude, neither below 0, for one exponent.
+[[nodiscard]] inline decay_candidate fit_decay_at(std::span<const measured_error> points, double exponent) {
+    double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
+    for (const measured_error& m : points) {
+        const double weight = 1 / (m.deviation * m.deviation);
+        const double x = std::pow(m.work, -exponent);
+        w += weight;
+        wx += weight * x;
+        wy += weight * m.error;
+        wxx += weight * x * x;
+        wxy += weight * x * m.error;
+    }
+    const double determinant = w * wxx - wx * wx;
+    decay_fit fit{.exponent = exponent};
+    fit.floor = determinant > 0 ? (wxx * wy - wx * wxy) / determinant : 0;
+    fit.amplitude = determinant > 0 ? (w * wxy - wx * wy) / determinant : 0;
+    if (fit.floor <= 0) {
+        fit.floor = 0;
+        fit.amplitude = wxy / wxx;
+    }
+    if (fit.amplitude <= 0) {
+        fit.floor = wy / w;
+        fit.amplitude = 0;
+    }
+    for (const measured_error& m : points) { fit.misfit += std::pow((m.error - fit.at(m.work)) / m.deviation, 2); }
+    return {fit, determinant > 0 ? std::sqrt(wxx / determinant) : fit.floor};
+}
+
+}  // namespace detail
+
+/// The best fit over exponents from 0.15 to 1: below that, what falls cannot be told from what does not. Expects
+/// positive work and deviations. With one measurement the exponent is taken as 1/2, the law of independent samples; the
+/// floor is taken as 0 below three.
+[[nodiscard]] inline decay_fit fit_decay(std::span<const measured_error> points) {
+    if (points.empty()) { return {}; }
+    if (points.size() < 3) {
+        const measured_error& last = points.back();
+        decay_fit fit{};
+        if (points.size() == 2 && points[0].work < last.work && points[0].error > 0 && last.error > 0) {
+            const double slope = std::log(points[0].error / last.error) / std::log(last.work / points[0].work);
+            fit.exponent = std::clamp(slope, 0.15, 1.0);
+        }
+        fit.amplitude = last.error * std::pow(last.work, fit.exponent);
+        return fit;
+    }
+    std::vector<detail::decay_candidate> all;
+    for (int step = 0; step <= 34; ++step) { all.push_back(detail::fit_decay_at(points, 0.15 + 0.025 * step)); }
+    const auto by_misfit = [](const auto& a, const auto& b) { return a.fit.misfit < b.fit.misfit; };
+    decay_fit best = std::min_element(all.begin(), all.end(), by_misfit)->fit;
+    double low = std::numeric_limits<double>::infinity();
+    for (const detail::decay_candidate& c : all) {
+        const double room = 9 - (c.fit.misfit - best.misfit);  // Δχ² = 9 is three standard deviations
+        if (room >= 0) { low = std::min(low, c.fit.floor - c.floor_deviation * std::sqrt(room)); }
+    }
+    best.floor_low = std::max(0.0, low);
+    return best;
+}
+
+}  // namespace aglow

@@ -1,0 +1,247 @@
+#include <array>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include <aglow/report/audit.hpp>
+
+#include "report/synthetic.hpp"
+#include "support/catch.hpp"
+
+using namespace aglow;
+using synthetic::damage;
+using synthetic::field;
+
+namespace {
+
+/// An audit whose target is the picture's true error: the hardest case for a bound.
+audit_options at_the_edge(const field& f, std::uint64_t seed) {
+    return {.target = std::max(0.01, f.mean_error()), .seed = seed};
+}
+
+/// How many of `rounds` audits end as `status`.
+template <typename P>
+int count(int rounds, const field& f, const P& probe, audit_options options, audit_status status) {
+    int found = 0;
+    for (int r = 0; r < rounds; ++r) {
+        options.seed = static_cast<std::uint64_t>(r);
+        found += audit(f.image(), probe, options).status == status ? 1 : 0;
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("audit: every statement holds as often as it says, on six kinds of damage") {
+    constexpr int rounds = 200;
+    const auto kind =
+        GENERATE(damage::noise, damage::too_bright, damage::outliers, damage::edges, damage::waves, damage::dark);
+    const field f{kind, 5};
+    const std::vector<double> errors = f.errors();
+    const double q95 = quantile(errors, 0.95);
+    const double clipped = mean_of(detail::clipped(errors)).mean();
+    int mean_held = 0, bias_held = 0, quantile_held = 0, clipped_held = 0;
+    std::vector<double> sharpness;
+    for (std::uint64_t r = 0; r < rounds; ++r) {
+        const audit_result a = audit(f.image(), f.probe(), at_the_edge(f, r));
+        mean_held += a.mean_error_bound >= f.mean_error() ? 1 : 0;
+        bias_held += a.energy_bias.contains(f.energy_bias()) ? 1 : 0;
+        quantile_held += a.quantile_bound.value() >= q95 ? 1 : 0;
+        clipped_held += a.clipped_error_bound >= clipped ? 1 : 0;
+        sharpness.push_back(a.mean_error_bound / f.mean_error());
+    }
+    CAPTURE(static_cast<int>(kind), f.mean_error(), median(sharpness));
+    const double least = synthetic::least_coverage(rounds) * rounds;
+    CHECK(mean_held >= least);
+    CHECK(bias_held >= least);
+    CHECK(quantile_held >= least);
+    CHECK(clipped_held >= least);
+    CHECK(median(sharpness) < (kind == damage::edges ? 1.6 : 1.35));
+}
+
+TEST_CASE("audit: error bars hold for 93 to 97.5 % of the pixels and at least 92 % of each class") {
+    constexpr int rounds = 60;
+    const auto kind = GENERATE(damage::noise, damage::outliers, damage::waves, damage::edges);
+    const field f{kind, 9};
+    running_mean all, rim;
+    for (std::uint64_t r = 0; r < rounds; ++r) {
+        const audit_result a = audit(f.all(), f.probe(), at_the_edge(f, r));
+        const std::vector<double> bars = error_bars(f.all(), a);
+        running_mean in, in_rim;
+        for (std::size_t i = 0; i < field::pixels; ++i) {
+            const double held = std::abs(f.picture[i] - f.truth[i]) <= bars[i] ? 1 : 0;
+            in.add(held);
+            if (f.classes[i] == 1) { in_rim.add(held); }
+        }
+        all.add(in.mean());
+        rim.add(in_rim.mean());
+    }
+    CAPTURE(static_cast<int>(kind), all.mean(), rim.mean());
+    CHECK(all.mean() >= 0.93);
+    CHECK(all.mean() <= (kind == damage::edges ? 0.99 : 0.975));
+    CHECK(rim.mean() >= 0.92);
+}
+
+TEST_CASE("audit: guesses that know where the errors are make the bound sharper") {
+    const field f{damage::edges, 2};
+    running_mean with, without;
+    for (std::uint64_t r = 0; r < 30; ++r) {
+        with.add(audit(audited_picture<double>{f.image(), f.guess}, f.probe(), at_the_edge(f, r)).mean_error_bound);
+        without.add(audit(f.image(), f.probe(), at_the_edge(f, r)).mean_error_bound);
+    }
+    CHECK(with.mean() > f.mean_error());
+    CHECK(with.mean() - f.mean_error() < 0.7 * (without.mean() - f.mean_error()));
+}
+
+TEST_CASE("audit: a right picture is certified") {
+    const field f{damage::none};
+    CHECK(count(50, f, f.probe(), {.target = 0.02, .bias_target = 0.005}, audit_status::certified) == 50);
+}
+
+TEST_CASE("audit: a picture 5 % too bright is never certified for 4 %, and found out for 3.5 %") {
+    const field f{damage::too_bright};
+    CHECK(count(50, f, f.probe(), {.target = 0.04}, audit_status::certified) == 0);
+    CHECK(count(50, f, f.probe(), {.target = 0.035}, audit_status::not_certified) == 50);
+}
+
+TEST_CASE("audit: one small light removed, one per cent of the energy, is found by the bias") {
+    field f{damage::none};
+    double mean = 0;
+    for (const double x : f.truth) { mean += x / field::pixels; }
+    std::size_t lit = 0;
+    for (std::size_t i = 0; i < field::pixels; ++i) { lit += i % field::side > 50 && f.truth[i] > 0.5 ? 1 : 0; }
+    for (std::size_t i = 0; i < field::pixels; ++i) {
+        if (i % field::side > 50 && f.truth[i] > 0.5) {
+            f.picture[i] -= 0.01 * mean * field::pixels / static_cast<double>(lit);
+        }
+    }
+    REQUIRE(f.energy_bias() == Approx(-0.01));
+    const audit_options options{.target = 0.02, .bias_target = 0.005};
+    CHECK(count(50, f, f.probe(), options, audit_status::certified) == 0);
+    CHECK(count(50, f, f.probe(), options, audit_status::not_certified) >= 45);
+}
+
+TEST_CASE("audit: one NaN pixel is enough to refuse, and no probe is spent") {
+    field f{damage::none};
+    f.picture[1234] = std::numeric_limits<double>::quiet_NaN();
+    const audit_result a = audit(f.image(), f.probe());
+    CHECK(a.status == audit_status::not_certified);
+    CHECK(a.broken_pixels == 1);
+    CHECK(a.samples == 0);
+    REQUIRE(a.reasons.size() == 1);
+}
+
+TEST_CASE("audit: noise of infinite variance and noise of rare spikes never pass, and are called by their name") {
+    const field f{damage::none};
+    const auto power_law = [&](std::size_t pixel, std::uint64_t seed) {
+        random_sampler<double> random{seed};
+        return f.truth[pixel] * 0.3 / 1.3 * std::pow(1 - random.next_1d(), -1 / 1.3);
+    };
+    const auto spikes = [&](std::size_t pixel, std::uint64_t seed) {
+        random_sampler<double> random{seed};
+        return f.truth[pixel] * (random.next_1d() < 1e-4 ? 5000.5 : 0.5);
+    };
+    CHECK(count(20, f, power_law, {.budget = 200'000}, audit_status::inconclusive) == 20);
+    CHECK(count(20, f, spikes, {.budget = 200'000}, audit_status::certified) == 0);
+    const audit_result a = audit(f.image(), power_law, {.budget = 200'000});
+    CHECK(a.tail_index > 0.6);
+    CHECK(a.reasons.front().find("heavy tails") == 0);
+}
+
+TEST_CASE("audit: noise of a finite variance is not called heavy, however different the pixels") {
+    const field f{damage::noise};
+    const auto uneven = [&](std::size_t pixel, std::uint64_t seed) {
+        const double width = std::exp(0.5 * synthetic::normal_of(pixel));
+        return f.truth[pixel] * (1 - width - width * std::log(1 - random_sampler<double>{seed}.next_1d()));
+    };
+    for (std::uint64_t r = 0; r < 10; ++r) {
+        const audit_result a = audit(f.image(), uneven, {.seed = r, .unseen = {{"caustics of the point light", 0.02}}});
+        CHECK(a.tail_index < 0.58);
+        CHECK(a.status == audit_status::certified);
+        CHECK(a.unseen.front().what == "caustics of the point light");
+    }
+}
+
+TEST_CASE("audit: broken probe samples are counted and nothing is certified on them") {
+    const field f{damage::none};
+    const auto broken = [&](std::size_t pixel, std::uint64_t seed) {
+        return seed % 1000 == 0 ? std::numeric_limits<double>::quiet_NaN() : f.truth[pixel];
+    };
+    const audit_result a = audit(f.image(), broken);
+    CHECK(a.broken_samples > 0);
+    CHECK(a.status == audit_status::inconclusive);
+    CHECK(is_finite(a.mean_error_bound));
+}
+
+TEST_CASE("audit: one thread and eight say the same, bit for bit") {
+    const field f{damage::edges};
+    const audit_result one = audit(f.all(), f.probe(), {});
+    for (const unsigned threads : {2u, 3u, 8u}) {
+        const audit_result many = audit(f.all(), f.probe(), {}, own_threads{threads});
+        CHECK(many.mean_error_bound == one.mean_error_bound);
+        CHECK(many.energy_bias.low == one.energy_bias.low);
+        CHECK(many.quantile_bound == one.quantile_bound);
+        CHECK(many.samples == one.samples);
+        REQUIRE(many.scales.size() == one.scales.size());
+        for (std::size_t i = 0; i < one.scales.size(); ++i) { CHECK(many.scales[i].scale == one.scales[i].scale); }
+    }
+}
+
+TEST_CASE("audit: a picture scaled by a power of two gets the same statements, bit for bit") {
+    const field f{damage::outliers};
+    field scaled = f;
+    for (auto* values : {&scaled.picture, &scaled.truth, &scaled.guess}) {
+        for (double& x : *values) { x *= 0x1p40; }
+    }
+    const audit_result a = audit(f.all(), f.probe());
+    const audit_result b = audit(scaled.all(), scaled.probe());
+    CHECK(a.mean_error_bound == b.mean_error_bound);
+    CHECK(a.energy_bias.high == b.energy_bias.high);
+    CHECK(a.scales.front().scale == b.scales.front().scale);
+    CHECK(a.dark_floor * 0x1p40 == b.dark_floor);
+}
+
+TEST_CASE("audit: colours count channel by channel, from any type with an index") {
+    const field f{damage::none};
+    std::vector<float> picture;
+    for (const double x : f.truth) {
+        picture.push_back(static_cast<float>(x));
+        picture.push_back(static_cast<float>(0.5 * x));
+        picture.push_back(static_cast<float>(0.1 * x * 1.3));
+    }
+    const auto colour = [&](std::size_t pixel, std::uint64_t) {
+        return glm::vec3{static_cast<float>(f.truth[pixel])} * glm::vec3{1, 0.5f, 0.1f};
+    };
+    const auto list = [&](std::size_t pixel, std::uint64_t) {
+        const double x = f.truth[pixel];
+        return std::array<double, 3>{x, 0.5 * x, 0.1 * x};
+    };
+    const image_view<float> image{picture, field::side, field::side, 3};
+    const audit_result a = audit(image, colour);
+    CHECK(a.mean_error == Approx(audit(image, list).mean_error).epsilon(1e-5));
+    CHECK(a.mean_error < 0.1);
+    CHECK(a.mean_error > 0.06);
+    CHECK(a.energy_bias.estimate == Approx(0.03 / 1.6).epsilon(0.05));
+}
+
+TEST_CASE("audit: a budget is kept, and costs sharpness only") {
+    const field f{damage::noise};
+    const audit_result rich = audit(f.image(), f.probe(), {.target = 0.04});
+    const audit_result poor = audit(f.image(), f.probe(), {.target = 0.04, .budget = 40'000});
+    CHECK(rich.samples > 200'000);
+    CHECK(poor.samples <= 40'000);
+    CHECK(poor.mean_error_bound > rich.mean_error_bound);
+}
+
+TEST_CASE("audit: wrong settings are refused by name") {
+    const field f{damage::none};
+    CHECK(synthetic::refuses("target", [&] { (void)audit(f.image(), f.probe(), {.target = 0}); }));
+    CHECK(synthetic::refuses("probes", [&] { (void)audit(f.image(), f.probe(), {.probes = 10}); }));
+    CHECK(synthetic::refuses("confidence", [&] { (void)audit(f.image(), f.probe(), {.confidence = 1}); }));
+    audited_picture<double> wrong = f.all();
+    wrong.guess = wrong.guess.first(5);
+    CHECK(synthetic::refuses("guess", [&] { (void)audit(wrong, f.probe()); }));
+}

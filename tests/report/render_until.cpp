@@ -1,0 +1,140 @@
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <aglow/report/render_until.hpp>
+
+#include "report/synthetic.hpp"
+#include "support/catch.hpp"
+
+using namespace aglow;
+using synthetic::field;
+
+namespace {
+
+/// A renderer whose relative error is normal with deviation `floor` + `start` · work^-`exponent`.
+struct renderer {
+    double floor;
+    double start;
+    double exponent;
+    std::uint64_t seed;
+    field f{synthetic::damage::none};
+
+    audited_picture<double> operator()(double work) {
+        for (std::size_t i = 0; i < field::pixels; ++i) {
+            const double deviation = floor + start * std::pow(work, -exponent);
+            f.picture[i] = std::max(0.0, f.truth[i] * (1 + deviation * synthetic::normal_of(mix(seed, i))));
+        }
+        return {f.image(), f.guess};
+    }
+
+    /// The least work after which the true error is `target`.
+    double oracle(double target) {
+        double low = 1e-3;
+        double high = 1e9;
+        for (int i = 0; i < 24; ++i) {
+            const double work = std::sqrt(low * high);
+            (*this)(work);
+            (f.mean_error() > target ? low : high) = work;
+        }
+        return high;
+    }
+};
+
+render_until_options options(std::uint64_t seed) {
+    render_until_options o{.first_work = 4, .most_work = 1e6};
+    o.audit.target = 0.05;
+    o.audit.seed = seed;
+    return o;
+}
+
+}  // namespace
+
+TEST_CASE("render_until: no false certificate, and at most twice the work of somebody who knows the truth") {
+    std::vector<double> ratios;
+    int wrong = 0;
+    for (std::uint64_t r = 0; r < 40; ++r) {
+        renderer render{0, 1, 0.5, r};
+        const until_result result = render_until(render, render.f.probe(), options(r));
+        REQUIRE(result.status == until_status::reached);
+        CHECK(result.certificate.status == audit_status::certified);
+        render(result.work);
+        wrong += render.f.mean_error() > 0.05 ? 1 : 0;
+        ratios.push_back(result.work / render.oracle(0.05));
+    }
+    CHECK(wrong == 0);
+    CHECK(mean_of(ratios).mean() <= 2);
+}
+
+TEST_CASE("render_until: an error that stays above the target is called unreachable, and never certified") {
+    for (std::uint64_t r = 0; r < 20; ++r) {
+        renderer render{0.1, 1, 0.5, r};
+        const until_result result = render_until(render, render.f.probe(), options(r));
+        CHECK(result.status == until_status::unreachable);
+        CHECK(result.decay.floor_low > 0.05);
+        CHECK(result.work < 1e5);
+        CHECK(std::isinf(result.predicted_work));
+    }
+}
+
+TEST_CASE("render_until: when the work is up it says how far it came and how much is missing") {
+    renderer render{0, 1, 0.5, 1};
+    render_until_options o = options(1);
+    o.most_work = 64;
+    const until_result result = render_until(render, render.f.probe(), o);
+    CHECK(result.status == until_status::out_of_work);
+    CHECK(result.work == 64);
+    CHECK(result.claims == 1);
+    CHECK(result.certificate.mean_error_bound >= 0.9 * 0.798 / 8);
+    CHECK(result.predicted_work > 200);
+    CHECK(result.predicted_work < 2000);
+}
+
+TEST_CASE("render_until: the caller can stop it, and hears how much is left") {
+    renderer render{0, 1, 0.5, 1};
+    render_until_options o = options(1);
+    std::vector<double> predicted;
+    o.progress = [&](const until_progress& p) {
+        predicted.push_back(p.predicted_work);
+        return predicted.size() < 3;
+    };
+    CHECK(render_until(render, render.f.probe(), o).status == until_status::cancelled);
+    REQUIRE(predicted.size() == 3);
+    CHECK(predicted[2] > 100);
+    CHECK(predicted[2] < 1500);
+}
+
+TEST_CASE("render_until: a broken pixel ends it at once") {
+    renderer render{0, 1, 0.5, 1};
+    const auto broken = [&](double work) {
+        const auto picture = render(work);
+        render.f.picture[3] = std::numeric_limits<double>::infinity();
+        return picture;
+    };
+    const until_result result = render_until(broken, render.f.probe(), options(1));
+    CHECK(result.status == until_status::broken);
+    CHECK(result.certificate.broken_pixels == 1);
+}
+
+TEST_CASE("render_until: looks come at growing work, and claims get ever less of the miss probability") {
+    renderer render{0.02, 1, 0.5, 3};
+    const until_result result = render_until(render, render.f.probe(), options(3));
+    REQUIRE(result.status == until_status::reached);
+    for (std::size_t i = 1; i < result.checks.size(); ++i) {
+        const double growth = result.checks[i].work / result.checks[i - 1].work;
+        CHECK(growth >= 1);
+        CHECK(growth <= 2.0001);
+    }
+    const double k = static_cast<double>(result.claims);
+    CHECK(1 - result.certificate.confidence == Approx(0.05 * 6 / (pi<double> * pi<double> * k * k)));
+}
+
+TEST_CASE("render_until: wrong settings are refused by name") {
+    renderer render{0, 1, 0.5, 1};
+    render_until_options o = options(1);
+    o.first_work = 0;
+    CHECK(synthetic::refuses("first_work", [&] { (void)render_until(render, render.f.probe(), o); }));
+    o = options(1);
+    o.most_growth = 1;
+    CHECK(synthetic::refuses("most_growth", [&] { (void)render_until(render, render.f.probe(), o); }));
+}
