@@ -1,7 +1,6 @@
 // How a material scatters light: Lambert, GGX, mirror, glass and their mixtures, split into the library's lobes.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,57 +17,6 @@
 
 namespace host {
 
-/// Directional albedo of a GGX part, so that what lies below gets exactly the rest.
-template <typename T>
-class coat_table {
-public:
-    coat_table() = default;
-    coat_table(T reflectance, T roughness) {
-        const ggx<T> facets{roughness};
-        for (std::size_t i = 0; i <= steps; ++i) {
-            const T z = std::max(T(1e-3), T(i) / T(steps));
-            albedo_[i] = mean_weight(facets, {std::sqrt(1 - z * z), 0, z}, reflectance);
-        }
-        // 2 ∫ E(z) z dz of the straight pieces between the nodes.
-        for (std::size_t i = 0; i < steps; ++i) {
-            const T a = T(i), b = T(i + 1);
-            const T left = (albedo_[i] * (2 * a + b) + albedo_[i + 1] * (a + 2 * b)) / 3;
-            mean_ += left / T(steps * steps);
-        }
-    }
-
-    /// What passes down at `cosine`, over the root of what passes on average: a base of albedo 1 below reflects
-    /// `below(wo) below(wi) / pi` (Kelemen & Szirmay-Kalos 2001, (6)).
-    [[nodiscard]] T below(T cosine) const {
-        const T x = std::min(cosine, T(1)) * T(steps);
-        const auto i = std::min(static_cast<std::size_t>(x), steps - 1);
-        const T f = x - T(i);
-        return (1 - (albedo_[i] * (1 - f) + albedo_[i + 1] * f)) / std::sqrt(1 - mean_);
-    }
-
-    /// Albedo at `cosine` of a white base below.
-    [[nodiscard]] T base_albedo(T cosine) const { return below(cosine) * std::sqrt(1 - mean_); }
-
-private:
-    static constexpr std::size_t steps = 64;
-
-    static T mean_weight(const ggx<T>& facets, const vec3<T>& wo, T reflectance) {
-        constexpr std::size_t grid = 64;
-        T sum = 0;
-        for (std::size_t i = 0; i < grid * grid; ++i) {
-            const vec2<T> u{(T(i % grid) + T(0.5)) / T(grid), (T(i / grid) + T(0.5)) / T(grid)};
-            const vec3<T> h = facets.facet(wo, u);
-            const vec3<T> wi = reflected(wo, h);
-            if (wi.z <= 0) { continue; }
-            sum += schlick(vec3<T>{reflectance}, glm::dot(wo, h)).x * facets.seen(wo, wi) / facets.seen(wo);
-        }
-        return sum / T(grid * grid);
-    }
-
-    std::array<T, steps + 1> albedo_{};
-    T mean_{0};
-};
-
 /// A material ready to scatter. All functions take the unit geometric normal; `Possible` names the lobes that the scene
 /// can have, so that the code of the others is left out. Safe from many threads.
 template <typename T>
@@ -77,11 +25,7 @@ public:
     using sample_type = aglow::scatter_sample<vec3<T>, T>;
 
     /// Throws `std::invalid_argument` for a material that cannot be (see `check`).
-    explicit bsdf(const material<T>& m) : m_{m}, lobes_{lobes_of(m)} {
-        check(m);
-        coated_ = aglow::any(lobes_, lobe_set::diffuse_reflection) && aglow::any(lobes_, lobe_set::glossy_reflection);
-        if (coated_) { coat_ = {aglow::max_component(m.glossy), m.roughness}; }
-    }
+    explicit bsdf(const material<T>& m) : m_{m}, lobes_{lobes_of(m)} { check(m); }
 
     [[nodiscard]] const material<T>& made_of() const { return m_; }
     [[nodiscard]] lobe_set lobes() const { return lobes_; }
@@ -146,16 +90,20 @@ private:
         const T cosine = std::abs(out);
         const auto has = [open](lobe_set lobe) { return aglow::any(Possible, lobe) && aglow::any(open, lobe); };
         shares s;
-        if (has(lobe_set::diffuse_reflection)) {
-            s.diffuse = aglow::max_component(m_.diffuse) * (coated_ ? coat_.base_albedo(cosine) : T(1));
-        }
+        if (has(lobe_set::diffuse_reflection)) { s.diffuse = aglow::max_component(m_.diffuse); }
         if (has(lobe_set::diffuse_transmission)) { s.through = aglow::max_component(m_.translucent); }
-        if (has(lobe_set::glossy_reflection)) { s.glossy = aglow::max_component(schlick(m_.glossy, cosine)); }
+        if (has(lobe_set::glossy_reflection)) { s.glossy = aglow::max_component(facet_reflectance(cosine)); }
         if (has(lobe_set::specular_reflection)) { s.mirror = mirror_reflectance(out); }
         if (has(lobe_set::specular_transmission)) { s.refracted = 1 - mirror_reflectance(out); }
         const T sum = s.sum();
         if (!(sum > 0)) { return {}; }
         return {s.diffuse / sum, s.through / sum, s.glossy / sum, s.mirror / sum, s.refracted / sum};
+    }
+
+    /// At grazing angles facets reflect what a diffuse part leaves them, so that both never make more than 1, and the
+    /// diffuse part stays Lambert's.
+    [[nodiscard]] vec3<T> facet_reflectance(T cosine) const {
+        return schlick(m_.glossy, vec3<T>{1} - m_.diffuse, cosine);
     }
 
     /// The index beyond over the index on the side of `wo`, whose cosine with the normal is `out`.
@@ -222,12 +170,7 @@ private:
     [[nodiscard]] vec3<T> reflection(const vec3<T>& normal, const vec3<T>& wo, const vec3<T>& wi, T out, T in,
                                      lobe_set open) const {
         vec3<T> f{0};
-        if (aglow::any(open, lobe_set::diffuse_reflection)) {
-            f = m_.diffuse * (1 / aglow::pi<T>);
-            if constexpr (aglow::any(Possible, lobe_set::glossy_reflection)) {
-                if (coated_) { f *= coat_.below(out) * coat_.below(in); }
-            }
-        }
+        if (aglow::any(open, lobe_set::diffuse_reflection)) { f = m_.diffuse * (1 / aglow::pi<T>); }
         if constexpr (aglow::any(Possible, lobe_set::glossy_reflection)) {
             if (aglow::any(open, lobe_set::glossy_reflection)) { f += facets(normal, wo, wi, out, in); }
         }
@@ -241,13 +184,11 @@ private:
         const vec3<T> b = local.to_local(wi);
         const vec3<T> h = glm::normalize(a + b);
         const T unit = distribution.density(h) * distribution.seen(a, b) / (4 * out * in);
-        return schlick(m_.glossy, std::abs(glm::dot(a, h))) * unit;
+        return facet_reflectance(std::abs(glm::dot(a, h))) * unit;
     }
 
     material<T> m_;
     lobe_set lobes_;
-    bool coated_{false};
-    coat_table<T> coat_{};
 };
 
 /// What a ray meets: a place and its material. The library's `Surface`.

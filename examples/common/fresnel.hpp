@@ -24,12 +24,12 @@ template <typename T>
     return (across * across + along * along) / 2;
 }
 
-/// Schlick's fit for metals: `straight` at normal incidence, 1 at grazing.
+/// Reflectance that rises from `straight` at normal incidence to `grazing` (Schlick 1994).
 template <typename T>
-[[nodiscard]] vec3<T> schlick(const vec3<T>& straight, T cosine) {
+[[nodiscard]] vec3<T> schlick(const vec3<T>& straight, const vec3<T>& grazing, T cosine) {
     const T m = 1 - cosine;
     const T m2 = m * m;
-    return straight + (vec3<T>{1} - straight) * (m2 * m2 * m);
+    return straight + (grazing - straight) * (m2 * m2 * m);
 }
 
 /// `wo` mirrored at `normal`.

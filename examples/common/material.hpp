@@ -19,11 +19,12 @@ using aglow::vec3;
 /// `radiance`, which leaves on the side of the normal, and `index`, which is inside.
 template <typename T>
 struct material {
-    /// Share of the light that is reflected evenly (Lambert); below a glossy part, of what passes that part.
+    /// Share of the light that is reflected evenly (Lambert).
     vec3<T> diffuse{0};
     /// Share of the light that comes out evenly on the other side (Lambert).
     vec3<T> translucent{0};
-    /// Reflectance of rough facets (GGX) at normal incidence; rises to 1 at grazing angles (Schlick).
+    /// Reflectance of rough facets (GGX) at normal incidence; rises towards grazing angles to all that `diffuse`
+    /// leaves.
     vec3<T> glossy{0};
     /// Width of the facets' distribution, alpha; not its square root.
     T roughness{T(0.2)};
@@ -54,8 +55,7 @@ void check(const material<T>& m) {
     for (const vec3<T>* part : {&m.diffuse, &m.translucent, &m.glossy, &m.mirror, &m.radiance}) {
         if (!aglow::is_radiance(*part)) { refuse("a part is negative or not finite"); }
     }
-    // A glossy part takes its own share off the diffuse one; others do not know of each other.
-    const vec3<T> sum = glm::max(m.diffuse + m.translucent, m.glossy) + m.mirror;
+    const vec3<T> sum = m.diffuse + m.translucent + m.glossy + m.mirror;
     if (aglow::max_component(sum) > 1) { refuse("the parts reflect more than they receive"); }
     if (!aglow::is_black(m.glossy)) {
         if (!(m.roughness > T(1e-3)) || m.roughness > 1) { refuse("roughness outside (0.001, 1]"); }

@@ -75,15 +75,14 @@ template <typename T>
     return s;
 }
 
-/// The diffuse box on a floor with a rough coat.
+/// The diffuse box on a glossy floor.
 template <typename T>
 [[nodiscard]] scene_description<T> glossy_floor() {
-    scene_description<T> s{.name = "glossy-floor",
-                           .about = "the Cornell box with its blocks on a floor with a rough coat"};
-    const material<T> coated{
+    scene_description<T> s{.name = "glossy-floor", .about = "the Cornell box with its blocks on a glossy floor"};
+    const material<T> glossy{
         .diffuse = vec3<T>{T(0.35), T(0.32), T(0.3)}, .glossy = vec3<T>{T(0.3)}, .roughness = T(0.15)};
     add_cornell_lamp(s);
-    const std::size_t white = add_cornell_walls(s, &coated);
+    const std::size_t white = add_cornell_walls(s, &glossy);
     add_cornell_blocks(s, white, white);
     return s;
 }
