@@ -9,6 +9,7 @@
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
 #include <aglow/core/parallel.hpp>
+#include <aglow/core/sobol.hpp>
 
 namespace aglow {
 
