@@ -2,15 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
+
+#include <aglow/core/numbers.hpp>
 
 namespace aglow {
 
 /// The probability to go on when the largest component of the throughput goes from `before` to `after`
 /// (Arvo & Kirk 1990): divided by it, the largest component of a survivor is no larger than before, unless `ceiling` is
-/// below one. 0 for a black path.
-template <typename T>
+/// below one. 0 for a path that is black, or not finite.
+template <std::floating_point T>
 [[nodiscard]] constexpr T survival(T before, T after, T ceiling = T(1)) {
-    if (!(after > 0) || !(before > 0)) { return T(0); }
+    if (!is_finite(after) || !is_finite(before) || after <= 0 || before <= 0) { return T(0); }
     return std::min(ceiling, after / before);
 }
 
