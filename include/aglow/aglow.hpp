@@ -100,4 +100,5 @@
 #include <aglow/report/quantiles.hpp>
 #include <aglow/report/render_until.hpp>
 #include <aglow/report/running_mean.hpp>
+#include <aglow/report/statement.hpp>
 #include <aglow/report/tails.hpp>

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include <aglow/report/audit.hpp>
+#include <aglow/report/statement.hpp>
 
 #include "report/synthetic.hpp"
 #include "support/catch.hpp"
@@ -244,4 +245,16 @@ TEST_CASE("audit: wrong settings are refused by name") {
     audited_picture<double> wrong = f.all();
     wrong.guess = wrong.guess.first(5);
     CHECK(synthetic::refuses("guess", [&] { (void)audit(wrong, f.probe()); }));
+}
+
+TEST_CASE("statement: says the status, the bound, why, and what was not seen") {
+    const field f{damage::too_bright};
+    const audit_options options{.target = 0.02, .unseen = {{"caustics of the point light", 0.03}}};
+    const std::string text = statement(audit(f.image(), f.probe(), options));
+    CHECK(text.find("not certified: mean relative error within 2 %") == 0);
+    CHECK(text.find("because the mean relative error is above the target") != std::string::npos);
+    CHECK(text.find("with 95 % confidence, the energy is off by 4.") != std::string::npos);
+    CHECK(text.find("caustics of the point light, 3 % of the light") != std::string::npos);
+    CHECK(percent(0.0412849) == "4.13 %");
+    CHECK(percent(std::numeric_limits<double>::infinity()) == "unknown");
 }

@@ -86,8 +86,8 @@ TEST_CASE("render_until: when the work is up it says how far it came and how muc
     CHECK(result.work == 64);
     CHECK(result.claims == 1);
     CHECK(result.certificate.mean_error_bound >= 0.9 * 0.798 / 8);
-    CHECK(result.predicted_work > 200);
-    CHECK(result.predicted_work < 2000);
+    CHECK(result.predicted_work > 0.5 * render.oracle(0.05));
+    CHECK(result.predicted_work < 2 * render.oracle(0.05));
 }
 
 TEST_CASE("render_until: the caller can stop it, and hears how much is left") {

@@ -109,7 +109,7 @@ template <std::floating_point T, Probe P, Executor E = in_sequence>
     if (count_broken_pixels(picture.image) > 0) { return detail::refuse_broken(picture, options); }
     detail::audit_sample<T> sample{picture, options};
     sample.draw(probe, run);
-    audit_result result{.target = options.target, .confidence = options.confidence};
+    audit_result result{.target = options.target, .confidence = options.confidence, .quantile = options.quantile};
     result.unseen = options.unseen;
     result.dark_floor = sample.dark_floor();
     result.probes = sample.probes();

@@ -71,6 +71,7 @@ struct audit_result {
     std::vector<std::string> reasons{};
     double target{0};
     double confidence{0};
+    double quantile{0};    ///< which quantile `quantile_bound` bounds
     double dark_floor{0};  ///< δ, in the picture's unit
 
     interval energy_bias{};          ///< Σ(B−I)/ΣI, of the mean of the channels

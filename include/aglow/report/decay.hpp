@@ -22,7 +22,7 @@ struct decay_fit {
     double floor{0};
     double amplitude{0};
     double exponent{0.5};
-    double floor_low{0};  ///< smallest floor that the measurements allow (three standard deviations)
+    double floor_low{0};  ///< smallest floor that the measurements allow (three and a half standard deviations)
     double misfit{0};     ///< χ² of the fit
 
     [[nodiscard]] double at(double work) const { return floor + amplitude * std::pow(work, -exponent); }
@@ -92,7 +92,7 @@ struct decay_candidate {
     decay_fit best = std::min_element(all.begin(), all.end(), by_misfit)->fit;
     double low = std::numeric_limits<double>::infinity();
     for (const detail::decay_candidate& c : all) {
-        const double room = 9 - (c.fit.misfit - best.misfit);  // Δχ² = 9 is three standard deviations
+        const double room = 12 - (c.fit.misfit - best.misfit);  // Δχ² = 12 is three and a half standard deviations
         if (room >= 0) { low = std::min(low, c.fit.floor - c.floor_deviation * std::sqrt(room)); }
     }
     best.floor_low = std::max(0.0, low);

@@ -1,0 +1,53 @@
+// An audit's result in words, for people who decide on it.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include <aglow/report/audit_result.hpp>
+
+namespace aglow {
+
+/// `share` as a percentage with three significant digits, such as "4.13 %"; "unknown" where it is not finite.
+[[nodiscard]] inline std::string percent(double share) {
+    if (!is_finite(share)) { return "unknown"; }
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, 100 * share, std::chars_format::general, 3).ptr;
+    return std::string(digits, end) + " %";
+}
+
+[[nodiscard]] inline const char* words(audit_status status) {
+    switch (status) {
+        case audit_status::certified: return "certified";
+        case audit_status::not_certified: return "not certified";
+        default: return "inconclusive";
+    }
+}
+
+/// The statements of an audit, one a line, each with what it means; what was not seen by the probe comes last.
+[[nodiscard]] inline std::string statement(const audit_result& result) {
+    const std::string sure = "with " + percent(result.confidence) + " confidence, ";
+    std::string text =
+        std::string{words(result.status)} + ": mean relative error within " + percent(result.target) + '\n';
+    for (const std::string& reason : result.reasons) { text += "because " + reason + '\n'; }
+    if (result.probes > 0) {
+        text += sure + "the mean relative error is at most " + percent(result.mean_error_bound) + " (estimate " +
+                percent(result.mean_error) + ")\n";
+        text += sure + "the energy is off by " + percent(result.energy_bias.low) + " to " +
+                percent(result.energy_bias.high) + '\n';
+        if (result.quantile_bound) {
+            text += sure + percent(result.quantile) + " of the pixels are off by at most " +
+                    percent(*result.quantile_bound) + '\n';
+        }
+        text += "seen: " + std::to_string(result.probes) + " pixels, " + std::to_string(result.samples) + " samples\n";
+    }
+    for (const unseen_transport& u : result.unseen) {
+        text += "not seen by the probe, nothing is said of it: " + u.what + ", " + percent(u.flux_share) +
+                " of the light\n";
+    }
+    return text;
+}
+
+}  // namespace aglow
