@@ -47,7 +47,8 @@ concept TellsPdf = requires(const Lights& lights, const vec3<hit_scalar<H>>& v, 
 /// Which lobes look for lights by a scattered ray as well, so that both ways share the work.
 struct light_sharing {
     lobe_set lit{lobe_set::smooth};        ///< lobes that are lit here
-    lobe_set scattered{lobe_set::smooth};  ///< of these, lobes from which a scattered ray will look too
+    lobe_set scattered{lobe_set::smooth};  ///< of these, lobes from which a scattered ray will look too; exactly what
+                                           ///< is asked of `sample`, specular lobes included (name them in both)
 };
 
 /// Radiance that leaves `hit` towards `wo`, having come straight from `lights`: an unbiased estimate of one shadow ray,
@@ -65,8 +66,8 @@ template <Scene World, Illuminator Lights, Sampler R>
     const vec3<T> wi = light->towards;
     const T cosine = std::abs(glm::dot(vec3<T>(hit.normal), wi));
     S reflected = hit.evaluate(wo, wi, sharing.lit & ~sharing.scattered);
-    if (any(sharing.lit & sharing.scattered)) {
-        const lobe_set shared = sharing.lit & sharing.scattered;
+    const lobe_set shared = sharing.lit & sharing.scattered;
+    if (any(shared, lobe_set::smooth)) {
         const bool met = TellsPdf<Lights, hit_of<World>> && light->pdf > 0;
         const T share = met ? balance(T(light->pdf), T(hit.pdf(wo, wi, shared))) : T(1);
         reflected = reflected + hit.evaluate(wo, wi, shared) * band_of<S>(share);

@@ -9,7 +9,8 @@ namespace aglow {
 
 /// What became of the emitted particles. Counts are exact: emitted = escaped + absorbed + roulette + unneeded + capped
 /// + dropped.
-/// Powers are in the unit of the lights' power summed over paths; divide by `emitted` for watts.
+/// Powers are in the unit of the lights' power summed over paths; divide by `emitted` for watts. They balance in the
+/// mean: roulette takes as much as it gives.
 template <Spectrum S>
 struct energy_ledger {
     std::uint64_t emitted{0};   ///< particles that lights sent out
@@ -23,7 +24,9 @@ struct energy_ledger {
     S power_emitted{};
     S power_escaped{};
     S power_absorbed{};  ///< expected absorption: what scattering took, surface by surface
+    S power_unneeded{};
     S power_capped{};
+    S power_dropped{};  ///< as far as it was known: what a particle carried when it met the broken hit
 
     /// Joins the books of two disjoint sets of paths.
     energy_ledger& operator+=(const energy_ledger& other) {
@@ -38,7 +41,9 @@ struct energy_ledger {
         power_emitted = power_emitted + other.power_emitted;
         power_escaped = power_escaped + other.power_escaped;
         power_absorbed = power_absorbed + other.power_absorbed;
+        power_unneeded = power_unneeded + other.power_unneeded;
         power_capped = power_capped + other.power_capped;
+        power_dropped = power_dropped + other.power_dropped;
         return *this;
     }
 };

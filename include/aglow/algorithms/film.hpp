@@ -51,14 +51,15 @@ public:
     [[nodiscard]] B error(std::size_t x, std::size_t y) const {
         const pixel& p = pixels_[y * width_ + x];
         if (p.count == 0) { return B(0); }
-        const B n = static_cast<B>(p.count);
-        const B mean = p.level / n;
-        const B variance = std::max(B(0), p.level2 / n - mean * mean) / n;
-        return p.guess / n + std::sqrt(variance);
+        const double n = p.count;
+        const double mean = p.level / n;
+        // One sample alone may be off by all of itself.
+        const double error = p.count == 1 ? mean : std::sqrt(std::max(0.0, p.level2 / n - mean * mean) / (n - 1));
+        return static_cast<B>(p.guess / n + error);
     }
 
     /// Adds samples: `eye(film_point)` is the ray through a point in pixels, `integrator(ray, numbers)` an `estimate`
-    /// of what comes back along it.
+    /// of what comes back along it; its member type `scalar` is what points and rays are made of.
     template <typename Eye, typename Integrator, Executor Run = in_sequence>
     void expose(const Eye& eye, const Integrator& integrator, const film_options& options = {}, const Run& run = {}) {
         std::atomic<std::size_t> rows{0};
@@ -77,9 +78,10 @@ public:
 private:
     struct pixel {
         S sum{};
-        B guess{0};
-        B level{0};
-        B level2{0};
+        // In double: squares of faint light leave the range of floats, and a mean far above its spread hides it.
+        double guess{0};
+        double level{0};
+        double level2{0};
         std::uint32_t count{0};
     };
 
@@ -100,9 +102,9 @@ private:
     }
 
     static void add(pixel& p, const estimate<S>& seen) {
-        const B level = max_component(seen.value);
+        const double level = static_cast<double>(max_component(seen.value));
         p.sum = p.sum + seen.value;
-        p.guess += is_finite(seen.error) ? seen.error : B(0);
+        p.guess += is_finite(seen.error) ? static_cast<double>(seen.error) : 0.0;
         p.level += level;
         p.level2 += level * level;
         ++p.count;

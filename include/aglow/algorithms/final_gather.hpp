@@ -3,6 +3,8 @@
 // Jensen 1996; Reichert 1992. Smooth and sharp where the map itself is blotchy; costs its rays at every point.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include <aglow/algorithms/layers.hpp>
@@ -35,7 +37,7 @@ public:
         if (!any(hit.lobes(), lobe_set::diffuse) || options_.rays == 0) { return {}; }
         const std::uint64_t seed = seed_from(numbers.at(bounce, purpose::gather));
         S sum{};
-        B sum2{0};
+        double sum2{0};  // squares of faint light leave the range of floats
         B guess{0};
         for (std::uint32_t i = 0; i < options_.rays; ++i) {
             sobol_sampler<T> random{seed, i};
@@ -46,14 +48,15 @@ public:
             const S radiance = next->weight * light.radiance;
             if (!is_radiance(radiance)) { continue; }
             sum = sum + radiance;
-            sum2 += square(max_component(radiance));
+            sum2 += square(static_cast<double>(max_component(radiance)));
             guess += max_component(next->weight) * light.error;
         }
         const B share = 1 / static_cast<B>(options_.rays);
-        const B mean = max_component(sum) * share;
-        const B variance = std::max(B(0), sum2 * share - mean * mean) * share;
+        const double n = static_cast<double>(options_.rays);
+        const double mean = static_cast<double>(max_component(sum)) / n;
+        const double variance = std::max(0.0, sum2 / n - mean * mean) / n;
         // Many rays average the map's errors out; what they have in common stays.
-        return {sum * share, std::sqrt(variance) + guess * share};
+        return {sum * share, static_cast<B>(std::sqrt(variance)) + guess * share};
     }
 
 private:

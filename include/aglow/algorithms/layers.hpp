@@ -60,24 +60,30 @@ private:
     density_options options_;
 };
 
-/// Layer: light straight from the lights by one shadow ray.
+/// Layer: light straight from the lights by one shadow ray, on the lobes `lit`. Glossy lobes share it with the rays
+/// that `layered_integrator` scatters.
 template <Scene World, Illuminator Lights>
 class direct_layer {
 public:
-    direct_layer(const World& scene, const Lights& lights) : scene_{scene}, lights_{lights} {}
+    direct_layer(const World& scene, const Lights& lights, lobe_set lit = lobe_set::smooth)
+        : scene_{scene}, lights_{lights}, lit_{lit} {}
 
     template <typename N>
     [[nodiscard]] estimate<spectrum_of<World>> operator()(const hit_of<World>& hit, const vec3<scalar_of<World>>& wo,
                                                           scalar_of<World> error, const N& numbers,
                                                           std::uint32_t bounce) const {
+        // Specular lobes take their share of the scattered rays: what is scattered here must be named as it is there.
+        const lobe_set scattered = hit.lobes() & ~lobe_set::diffuse;
+        if (!any(hit.lobes(), lit_ & lobe_set::smooth)) { return {}; }
         return {direct_light(scene_, lights_, hit, wo, error, numbers.at(bounce, purpose::light),
-                             {.lit = lobe_set::smooth, .scattered = lobe_set::glossy}),
+                             {.lit = lit_ | lobe_set::specular, .scattered = scattered}),
                 0};
     }
 
 private:
     const World& scene_;
     const Lights& lights_;
+    lobe_set lit_;
 };
 
 /// Several layers, added up.

@@ -93,10 +93,11 @@ template <Scene World, Numbers N>
     auto scatter_numbers = numbers.at(bounce, purpose::scatter);
     const auto next = hit.sample(wo, scatter_numbers, lobes);
     if (!next) { return false; }
+    const vec3<T> wi = next->wi;
     at.throughput = at.throughput * next->weight;
-    if (!is_radiance(at.throughput) || is_black(at.throughput)) { return false; }
+    if (!is_radiance(at.throughput) || is_black(at.throughput) || !is_direction(wi)) { return false; }
     if (bounce >= options.roulette_from) {
-        const B q = survival(B(1), max_component(at.throughput));
+        const B q = survival(B(1), max_component(at.throughput), survival_ceiling<B>(bounce));
         if (!(numbers.at(bounce, purpose::roulette).next_1d() < q)) { return false; }
         at.throughput = at.throughput * (1 / q);
     }
@@ -104,9 +105,85 @@ template <Scene World, Numbers N>
     at.mirrored = at.mirrored && !any(next->lobe, lobe_set::smooth);
     at.scatter_pdf = any(next->lobe, lobe_set::smooth) ? T(next->pdf) : T(0);
     at.came_from = vec3<T>(hit.position);
-    at.path = {lift(at.came_from, vec3<T>(hit.normal), vec3<T>(next->wi), error), next->wi};
+    at.path = {lift(at.came_from, vec3<T>(hit.normal), wi, error), wi};
     return true;
 }
+
+/// A surface on a walk.
+template <Scene World>
+struct walk_stop {
+    using T = scalar_of<World>;
+
+    const hit_of<World>& hit;
+    vec3<T> wo;
+    T travelled;  ///< length of the last leg
+    T error;      ///< of the position
+    std::uint32_t bounce;
+};
+
+/// A walk from the eye or from a gather point. It takes for itself what surfaces emit and what comes from beyond the
+/// scene; the rest of a surface's light is for `shade` to add.
+template <Scene World, Illuminator Lights, Numbers N>
+class path_walk {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+    using B = band_of<S>;
+
+public:
+    path_walk(const World& scene, const Lights& lights, const N& numbers, emission_rule rule,
+              const path_options& options, const ray<T>& start)
+        : scene_{scene}, lights_{lights}, numbers_{numbers}, rule_{rule}, options_{options}, at_{.path = start} {}
+
+    /// Walks to the end. At each surface, `shade(walk, stop)` adds the light that it sends by its smooth lobes, and
+    /// returns the lobes to go on by.
+    template <typename Shade>
+    [[nodiscard]] incoming_light<S, T> run(const Shade& shade) {
+        for (std::uint32_t bounce = 1;; ++bounce) {
+            const auto hit = scene_.intersect(at_.path);
+            if (!hit) { return leave(bounce); }
+            if (!is_sound(*hit, at_.path)) { return result_; }
+            const walk_stop<World> stop = arrive(*hit, bounce);
+            if (options_.most_bounces != 0 && bounce > options_.most_bounces) { return result_; }
+            const lobe_set on = shade(*this, stop);
+            if (!scatter(at_, *hit, stop.wo, stop.error, numbers_, bounce, on, options_)) { return result_; }
+        }
+    }
+
+    /// Takes in light that leaves the surface the walk stands at, unless its numbers are broken.
+    void add(const S& radiance) {
+        const S arriving = at_.throughput * radiance;
+        if (is_radiance(arriving)) { result_.radiance = result_.radiance + arriving; }
+    }
+    void add(const estimate<S>& light) {
+        add(light.value);
+        const B error = max_component(at_.throughput) * light.error;
+        if (is_finite(error)) { result_.error += error; }
+    }
+
+private:
+    walk_stop<World> arrive(const hit_of<World>& hit, std::uint32_t bounce) {
+        const vec3<T> wo = -at_.path.direction;
+        const T travelled = glm::dot(vec3<T>(hit.position) - at_.path.origin, at_.path.direction);
+        if (bounce == 1) { result_.distance = travelled; }
+        const S glow = emitted(hit, wo);
+        if (!is_black(glow)) { add(glow * B(emission_share(at_, lights_, hit, rule_, bounce))); }
+        return {hit, wo, travelled, error_of(hit, at_.path.origin), bounce};
+    }
+
+    incoming_light<S, T> leave(std::uint32_t bounce) {
+        const T share = escape_share(at_, lights_, rule_, bounce);
+        if (share > 0) { add(escaped_radiance<S>(lights_, at_.path.direction) * B(share)); }
+        return result_;
+    }
+
+    const World& scene_;
+    const Lights& lights_;
+    const N& numbers_;
+    emission_rule rule_;
+    const path_options& options_;
+    walk_state<World> at_;
+    incoming_light<S, T> result_{};
+};
 
 }  // namespace detail
 
@@ -119,50 +196,23 @@ template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_ter
 [[nodiscard]] incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
     const World& scene, const Lights& lights, const ray<scalar_of<World>>& start, const N& numbers,
     emission_rule rule = emission_rule::all, const path_options& options = {}, const Terminal& terminal = {}) {
-    using S = spectrum_of<World>;
-    using T = scalar_of<World>;
-    using B = band_of<S>;
-    incoming_light<S, T> result;
-    detail::walk_state<World> at{.path = start};
-    const auto add = [&](const S& radiance) {
-        const S arriving = at.throughput * radiance;
-        if (is_radiance(arriving)) { result.radiance = result.radiance + arriving; }
-    };
-
-    for (std::uint32_t bounce = 1;; ++bounce) {
-        const auto hit = scene.intersect(at.path);
-        if (!hit) {
-            const T share = detail::escape_share(at, lights, rule, bounce);
-            if (share > 0) { add(escaped_radiance<S>(lights, at.path.direction) * B(share)); }
-            return result;
-        }
-        if (!is_sound(*hit, at.path)) { return result; }
-        const vec3<T> wo = -at.path.direction;
-        const vec3<T> position = hit->position;
-        const T error = error_of(*hit, at.path.origin);
-        const T travelled = glm::dot(position - at.path.origin, at.path.direction);
-        if (bounce == 1) { result.distance = travelled; }
-
-        const S glow = emitted(*hit, wo);
-        if (!is_black(glow)) { add(glow * B(detail::emission_share(at, lights, *hit, rule, bounce))); }
-        if (options.most_bounces != 0 && bounce > options.most_bounces) { return result; }
-
-        lobe_set lobes = hit->lobes();
+    const auto shade = [&](auto& walk, const detail::walk_stop<World>& stop) {
+        lobe_set lobes = stop.hit.lobes();
         if constexpr (!std::same_as<Terminal, no_terminal>) {
             if (any(lobes, lobe_set::diffuse)) {
-                if (const auto rest = terminal(*hit, wo, travelled, error)) {
-                    add(rest->value);
-                    result.error += max_component(at.throughput) * rest->error;
+                if (const auto rest = terminal(stop.hit, stop.wo, stop.travelled, stop.error)) {
+                    walk.add(*rest);
                     lobes = lobes & ~lobe_set::diffuse;
                 }
             }
         }
         if (any(lobes, lobe_set::smooth)) {
-            add(direct_light(scene, lights, *hit, wo, error, numbers.at(bounce, purpose::light),
-                             {.lit = lobes, .scattered = lobes}));
+            walk.add(direct_light(scene, lights, stop.hit, stop.wo, stop.error, numbers.at(stop.bounce, purpose::light),
+                                  {.lit = lobes, .scattered = lobes}));
         }
-        if (!detail::scatter(at, *hit, wo, error, numbers, bounce, lobes, options)) { return result; }
-    }
+        return lobes;
+    };
+    return detail::path_walk<World, Lights, N>{scene, lights, numbers, rule, options, start}.run(shade);
 }
 
 }  // namespace aglow

@@ -46,7 +46,8 @@ public:
         const map_layer<spectrum, scalar> indirect{maps_.indirect, options_.density};
         if (options_.direct_from_map) {
             const map_layer<spectrum, scalar> direct{maps_.direct, options_.density};
-            return trace(eye, numbers, layer_sum{direct, caustic, indirect});
+            const direct_layer gloss{scene_, lights_, lobe_set::glossy};
+            return trace(eye, numbers, layer_sum{direct, gloss, caustic, indirect});
         }
         return trace(eye, numbers, layer_sum{direct_layer{scene_, lights_}, caustic, indirect});
     }

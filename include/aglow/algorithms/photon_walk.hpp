@@ -26,14 +26,90 @@ enum class photon_history : std::uint8_t {
     return before == photon_history::direct ? photon_history::caustic : before;
 }
 
+/// Whether `v` is finite and about as long as a direction must be.
+template <typename T>
+[[nodiscard]] bool is_direction(const vec3<T>& v) {
+    const T norm2 = length2(v);
+    return is_finite(norm2) && norm2 > T(0.99) && norm2 < T(1.01);
+}
+
 /// Whether a hit can be trusted: finite place, unit normal, not behind the ray.
 template <Hit H, typename T>
 [[nodiscard]] bool is_sound(const H& hit, const ray<T>& from) {
-    const vec3<T> p = hit.position;
-    const T norm2 = length2(vec3<T>(hit.normal));
-    if (!is_finite(p.x + p.y + p.z) || !(norm2 > T(0.99)) || !(norm2 < T(1.01))) { return false; }
-    return glm::dot(p - from.origin, from.direction) >= -error_of(hit, from.origin);
+    const T along = glm::dot(vec3<T>(hit.position) - from.origin, from.direction);
+    return is_finite(along) && is_direction(vec3<T>(hit.normal)) && along >= -error_of(hit, from.origin);
 }
+
+/// Most surfaces that a path meets before roulette may end it even where nothing is absorbed.
+inline constexpr std::uint32_t endless_bounces = 4096;
+
+/// The largest probability with which a path goes on after `bounce` surfaces: a hair below one in the end, so that
+/// light between perfect mirrors ends too, and nothing is lost in the mean.
+template <std::floating_point B>
+[[nodiscard]] constexpr B survival_ceiling(std::uint32_t bounce) {
+    return bounce < endless_bounces ? B(1) : 1 - B(0x1p-20);
+}
+
+namespace detail {
+
+/// Where a particle stands, and what it carries.
+template <Spectrum S, std::floating_point T>
+struct photon_state {
+    ray<T> path{};
+    S power{};
+    photon_history history{photon_history::direct};
+};
+
+/// Books what ended, and says that it did.
+template <Spectrum S>
+[[nodiscard]] bool book(std::uint64_t& count, S& sum, const S& power) {
+    ++count;
+    sum = sum + power;
+    return false;
+}
+
+/// Sends a particle out; false where there is none to follow.
+template <Emitter Lights, Numbers N, Spectrum S, std::floating_point T>
+[[nodiscard]] bool emit_photon(const Lights& lights, const N& numbers, photon_state<S, T>& at,
+                               energy_ledger<S>& ledger) {
+    auto emission_numbers = numbers.at(0, purpose::emission);
+    const auto start = lights.emit(emission_numbers);
+    at.path = start.path;
+    at.power = start.power;
+    ++ledger.emitted;
+    const T place = length2(at.path.origin);
+    if (!is_radiance(at.power)) { return book(ledger.dropped, ledger.power_dropped, S{}); }
+    ledger.power_emitted = ledger.power_emitted + at.power;
+    if (!is_finite(place) || !is_direction(at.path.direction)) {
+        return book(ledger.dropped, ledger.power_dropped, at.power);
+    }
+    return is_black(at.power) ? book(ledger.unneeded, ledger.power_unneeded, at.power) : true;
+}
+
+/// Scatters a particle at `hit`, its surface number `bounce`; false where it ends.
+template <Surface H, Numbers N, Spectrum S, std::floating_point T>
+[[nodiscard]] bool scatter_photon(const H& hit, const N& numbers, std::uint32_t bounce, photon_state<S, T>& at,
+                                  energy_ledger<S>& ledger) {
+    using B = band_of<S>;
+    const vec3<T> wo = -at.path.direction;
+    auto scatter_numbers = numbers.at(bounce, purpose::scatter);
+    const auto next = hit.sample(wo, scatter_numbers, lobe_set::all);
+    if (!next) { return book(ledger.absorbed, ledger.power_absorbed, at.power); }
+    const vec3<T> wi = next->wi;
+    const S scattered = at.power * (next->weight * B(adjoint(hit, wo, wi)));
+    if (!is_radiance(scattered) || !is_direction(wi)) { return book(ledger.dropped, ledger.power_dropped, at.power); }
+    ledger.power_absorbed = ledger.power_absorbed + (at.power + scattered * B(-1));
+    const B q = survival(max_component(at.power), max_component(scattered), survival_ceiling<B>(bounce));
+    if (!(numbers.at(bounce, purpose::roulette).next_1d() < q)) {
+        return book(ledger.roulette, ledger.power_absorbed, S{});
+    }
+    at.power = scattered * (1 / q);
+    at.history = after(at.history, next->lobe);
+    at.path = {lift(vec3<T>(hit.position), vec3<T>(hit.normal), wi, error_of(hit, at.path.origin)), wi};
+    return true;
+}
+
+}  // namespace detail
 
 /// Follows the particle of `numbers` from `lights` until it is gone. Calls
 /// `land(hit, wi, power, history) -> bool` at each surface with a diffuse or glossy lobe; false ends the walk early
@@ -41,47 +117,21 @@ template <Hit H, typename T>
 template <Scene World, Emitter Lights, Numbers N, typename Land>
 void walk_photon(const World& scene, const Lights& lights, const N& numbers, std::uint32_t most_bounces,
                  energy_ledger<spectrum_of<World>>& ledger, Land&& land) {
-    using S = spectrum_of<World>;
     using T = scalar_of<World>;
-    using B = band_of<S>;
-    auto emission_numbers = numbers.at(0, purpose::emission);
-    const auto start = lights.emit(emission_numbers);
-    ray<T> path = start.path;
-    S power = start.power;
-    ++ledger.emitted;
-    if (!is_radiance(power)) { return void(++ledger.dropped); }
-    ledger.power_emitted = ledger.power_emitted + power;
-
-    photon_history history = photon_history::direct;
-    for (std::uint32_t bounce = 1;; ++bounce) {
-        const auto hit = scene.intersect(path);
-        if (!hit) {
-            ledger.power_escaped = ledger.power_escaped + power;
-            return void(++ledger.escaped);
-        }
-        if (!is_sound(*hit, path)) { return void(++ledger.dropped); }
+    detail::photon_state<spectrum_of<World>, T> at;
+    bool going = detail::emit_photon(lights, numbers, at, ledger);
+    for (std::uint32_t bounce = 1; going; ++bounce) {
+        const auto hit = scene.intersect(at.path);
+        if (!hit) { return void(detail::book(ledger.escaped, ledger.power_escaped, at.power)); }
+        if (!is_sound(*hit, at.path)) { return void(detail::book(ledger.dropped, ledger.power_dropped, at.power)); }
         ++ledger.bounces;
-        const vec3<T> wo = -path.direction;
-        if (any(hit->lobes(), lobe_set::smooth) && !land(*hit, wo, power, history)) { return void(++ledger.unneeded); }
+        if (any(hit->lobes(), lobe_set::smooth) && !land(*hit, vec3<T>(-at.path.direction), at.power, at.history)) {
+            return void(detail::book(ledger.unneeded, ledger.power_unneeded, at.power));
+        }
         if (most_bounces != 0 && bounce > most_bounces) {
-            ledger.power_capped = ledger.power_capped + power;
-            return void(++ledger.capped);
+            return void(detail::book(ledger.capped, ledger.power_capped, at.power));
         }
-        auto scatter_numbers = numbers.at(bounce, purpose::scatter);
-        const auto next = hit->sample(wo, scatter_numbers, lobe_set::all);
-        if (!next) {
-            ledger.power_absorbed = ledger.power_absorbed + power;
-            return void(++ledger.absorbed);
-        }
-        const S scattered = power * (next->weight * B(adjoint(*hit, wo, vec3<T>(next->wi))));
-        if (!is_radiance(scattered)) { return void(++ledger.dropped); }
-        ledger.power_absorbed = ledger.power_absorbed + (power + scattered * B(-1));
-        const B q = survival(max_component(power), max_component(scattered));
-        if (!(numbers.at(bounce, purpose::roulette).next_1d() < q)) { return void(++ledger.roulette); }
-        power = scattered * (1 / q);
-        history = after(history, next->lobe);
-        path = {lift(vec3<T>(hit->position), vec3<T>(hit->normal), vec3<T>(next->wi), error_of(*hit, path.origin)),
-                next->wi};
+        going = detail::scatter_photon(*hit, numbers, bounce, at, ledger);
     }
 }
 

@@ -25,17 +25,11 @@ struct irradiance_options {
 
 namespace detail {
 
-/// A place on a surface that takes in light from all of one side: what direct irradiance is sampled with.
-template <Spectrum S, std::floating_point T>
-struct collector {
+/// A place on a surface, without a material.
+template <std::floating_point T>
+struct bare_place {
     vec3<T> position{};
     vec3<T> normal{};
-
-    [[nodiscard]] lobe_set lobes() const { return lobe_set::diffuse_reflection; }
-    [[nodiscard]] S evaluate(const vec3<T>&, const vec3<T>& wi, lobe_set asked) const {
-        return any(asked, lobe_set::diffuse_reflection) && glm::dot(normal, wi) > 0 ? white<S>() : S{};
-    }
-    [[nodiscard]] T pdf(const vec3<T>&, const vec3<T>&, lobe_set) const { return 0; }
 };
 
 }  // namespace detail
@@ -56,10 +50,9 @@ template <Scene World, Illuminator Lights>
         const T cosine = glm::dot(normal, vec3<T>(light->towards));
         if (!(cosine > 0)) { continue; }
         const S radiance = light->radiance_over_pdf * band_of<S>(cosine);
-        const detail::collector<S, T> here{point, normal};
-        if (is_radiance(radiance) && sees(scene, here, vec3<T>(light->towards), T(light->distance), error)) {
-            sum = sum + radiance;
-        }
+        if (!is_radiance(radiance)) { continue; }
+        const detail::bare_place<T> here{point, normal};
+        if (sees(scene, here, vec3<T>(light->towards), T(light->distance), error)) { sum = sum + radiance; }
     }
     return sum * (1 / static_cast<band_of<S>>(std::max(1u, rays)));
 }

@@ -9,6 +9,8 @@
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <aglow/algorithms/photon_options.hpp>
@@ -25,6 +27,7 @@ template <Spectrum S, std::floating_point T>
 struct photon_block {
     std::array<std::vector<landed_photon<S, T>>, 3> landed{};
     std::array<std::size_t, 3> counts{};
+    std::array<std::size_t, 3> paths{};  ///< walked here that could have stored photons of each history
     energy_ledger<S> ledger{};
 };
 
@@ -34,11 +37,12 @@ class photon_tracer {
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
     using kinds = std::array<std::size_t, 3>;
+    using blocks_type = std::vector<photon_block<S, T>>;
     static constexpr std::size_t block_size = 1024;
 
 public:
     photon_tracer(const World& scene, const Lights& lights, const photon_options& options, const Run& run)
-        : scene_{scene}, lights_{lights}, options_{options}, run_{run} {
+        : scene_{scene}, lights_{lights}, options_{options}, run_{run}, most_bounces_{options.most_bounces} {
         if (options.pilot_paths == 0) { throw std::invalid_argument("photon_options.pilot_paths must not be 0"); }
     }
 
@@ -56,7 +60,6 @@ public:
 private:
     static constexpr std::size_t index(photon_history h) { return static_cast<std::size_t>(h); }
 
-    /// Finds how many paths each map needs.
     void plan() {
         wanted_ = {options_.direct, options_.caustic, options_.indirect};
         const lobe_set lobes = possible_lobes(scene_);
@@ -66,22 +69,8 @@ private:
                 leave_out(static_cast<photon_history>(kind), "left out, no diffuse or glossy surface");
             }
         }
-        if (wanted_ == kinds{}) { return; }
-        const kinds given{options_.paths.direct, options_.paths.caustic, options_.paths.indirect};
-        const kinds found = given == kinds{} ? pilot() : kinds{};
-        const std::size_t try_hard = 32 * options_.pilot_paths;
-        for (std::size_t kind = 0; kind < 3; ++kind) {
-            if (wanted_[kind] == 0) { continue; }
-            if (given != kinds{}) {
-                paths_[kind] = given[kind];
-                continue;
-            }
-            const double per_photon = static_cast<double>(options_.pilot_paths) / static_cast<double>(found[kind]);
-            const double needed = std::ceil(static_cast<double>(wanted_[kind]) * per_photon);
-            const auto most = static_cast<double>(options_.most_paths);
-            const double paths = found[kind] == 0 ? static_cast<double>(try_hard) : needed;
-            paths_[kind] = static_cast<std::size_t>(std::min(paths, most));
-        }
+        take_given_paths();
+        find_paths();
     }
 
     void leave_out(photon_history kind, const char* why) {
@@ -90,40 +79,73 @@ private:
         why_[index(kind)] = why;
     }
 
-    /// How many photons of each kind the pilot's paths would have stored.
-    [[nodiscard]] kinds pilot() {
-        kinds all{};
-        for (std::size_t kind = 0; kind < 3; ++kind) { all[kind] = wanted_[kind] == 0 ? 0 : options_.pilot_paths; }
+    void take_given_paths() {
+        const kinds given{options_.paths.direct, options_.paths.caustic, options_.paths.indirect};
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            if (wanted_[kind] != 0) { paths_[kind] = std::min(given[kind], options_.most_paths); }
+        }
+    }
+
+    /// Asks a pilot how many paths the maps need that were not told.
+    void find_paths() {
+        kinds unknown{};
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            unknown[kind] = wanted_[kind] != 0 && paths_[kind] == 0 ? options_.pilot_paths : 0;
+        }
+        if (unknown == kinds{}) { return; }
+        const kinds found = pilot(unknown);
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            if (unknown[kind] != 0) { paths_[kind] = paths_needed(wanted_[kind], found[kind]); }
+        }
+    }
+
+    /// Paths for `wanted` photons, where the pilot's paths would have stored `found`.
+    [[nodiscard]] std::size_t paths_needed(std::size_t wanted, std::size_t found) const {
+        const double pilots = static_cast<double>(options_.pilot_paths);
+        const double most = static_cast<double>(options_.most_paths);
+        const double hard = endless_ ? pilots : 32 * pilots;
+        const double needed =
+            found == 0 ? hard : std::ceil(static_cast<double>(wanted) * pilots / static_cast<double>(found));
+        return static_cast<std::size_t>(std::min(needed, most));
+    }
+
+    /// How many photons of each kind the pilot's paths would have stored. Paths that do not end within sight are cut
+    /// here, where no power is at stake, and there only if most do not end.
+    [[nodiscard]] kinds pilot(const kinds& paths) {
         piloting_ = true;
-        const auto blocks = trace(all, ~options_.pass);
+        if (options_.most_bounces == 0) { most_bounces_ = endless_bounces; }
+        const auto blocks = trace(paths, ~options_.pass);
         piloting_ = false;
         kinds found{};
+        energy_ledger<S> ledger;
         for (const auto& block : blocks) {
+            ledger += block.ledger;
             for (std::size_t kind = 0; kind < 3; ++kind) { found[kind] += block.counts[kind]; }
         }
+        endless_ = options_.most_bounces == 0 && 2 * ledger.capped > ledger.emitted;
+        if (!endless_) { most_bounces_ = options_.most_bounces; }
         return found;
     }
 
-    [[nodiscard]] std::vector<photon_block<S, T>> trace(const kinds& paths, std::uint64_t pass) {
+    [[nodiscard]] blocks_type trace(const kinds& paths, std::uint64_t pass) {
         const std::size_t count = *std::max_element(paths.begin(), paths.end());
-        std::vector<photon_block<S, T>> blocks((count + block_size - 1) / block_size);
+        blocks_type blocks((count + block_size - 1) / block_size);
+        if (count == 0) { return blocks; }
         std::atomic<std::size_t> done{0};
-        std::atomic<bool> stop{false};
         const halton_scrambling table{options_.seed, pass};
         for_each_block(run_, count, block_size, [&](std::size_t b, std::size_t first, std::size_t last) {
-            if (stop) { return; }
+            if (stopped_) { return; }
             for (std::size_t i = first; i < last; ++i) { trace_path(halton_numbers<T>{table, i}, i, paths, blocks[b]); }
-            done += last - first;
-            if (options_.progress && !piloting_) {
-                const double share = static_cast<double>(done) / static_cast<double>(count);
-                if (!options_.progress(share)) { stop = true; }
-            }
+            if (piloting_ || !options_.progress) { return; }
+            const std::size_t so_far = done += last - first;
+            if (!options_.progress(static_cast<double>(so_far) / static_cast<double>(count))) { stopped_ = true; }
         });
         return blocks;
     }
 
     void trace_path(const halton_numbers<T>& numbers, std::size_t i, const kinds& paths, photon_block<S, T>& into) {
-        walk_photon(scene_, lights_, numbers, options_.most_bounces, into.ledger,
+        for (std::size_t kind = 0; kind < 3; ++kind) { into.paths[kind] += i < paths[kind] ? 1 : 0; }
+        walk_photon(scene_, lights_, numbers, most_bounces_, into.ledger,
                     [&](const auto& hit, const vec3<T>& wi, const S& power, photon_history history) {
                         if (i < paths[index(history)]) { store(hit, wi, power, into, index(history)); }
                         const bool caustic = history != photon_history::indirect &&
@@ -140,27 +162,29 @@ private:
         const vec3<T> n = hit.normal;
         const vec3<T> side = glm::dot(n, wi) < 0 ? -n : n;
         into.landed[kind].push_back(
-            {hit.position, {power, packed_direction<std::int16_t>{wi}, packed_direction<std::int8_t>{side}}});
+            {hit.position, {power, packed_direction<std::int16_t>{wi}, packed_direction<std::int16_t>{side}}});
     }
 
-    void finish(traced_map<S, T>& map, const std::vector<photon_block<S, T>>& blocks, photon_history kind) {
+    void finish(traced_map<S, T>& map, const blocks_type& blocks, photon_history kind) {
         const std::size_t k = index(kind);
         std::size_t count = 0;
-        for (const auto& block : blocks) { count += block.landed[k].size(); }
+        for (const auto& block : blocks) {
+            count += block.landed[k].size();
+            map.paths += block.paths[k];
+        }
         std::vector<landed_photon<S, T>> photons;
         photons.reserve(count);
         for (const auto& block : blocks) {
             photons.insert(photons.end(), block.landed[k].begin(), block.landed[k].end());
         }
-        const T scale = paths_[k] == 0 ? T(0) : T(1) / static_cast<T>(paths_[k]);
+        const T scale = map.paths == 0 ? T(0) : T(1) / static_cast<T>(map.paths);
         static_cast<photon_map<S, T>&>(map) = photon_map<S, T>{photons, scale, run_};
         map.wanted = wanted_[k];
-        map.paths = paths_[k];
         map.why = why_[k];
         describe(map);
     }
 
-    static void describe(traced_map<S, T>& map) {
+    void describe(traced_map<S, T>& map) const {
         if (map.wanted == 0) { return; }
         const auto tell = [&](map_status status, std::string why) {
             map.status = status;
@@ -168,8 +192,11 @@ private:
         };
         const std::string paths = std::to_string(map.paths) + " paths";
         if (map.empty()) { return tell(map_status::empty, "empty, nothing landed in " + paths); }
-        // The pilot's guess is off by a few per cent; less than that is no news.
-        if (map.size() + map.wanted / 10 < map.wanted) {
+        if (stopped_) { return tell(map_status::partly, "partly filled, stopped after " + paths); }
+        // The pilot's guess is off by a few per cent, and counts by their chance; less than that is no news.
+        const double missing = static_cast<double>(map.wanted) - static_cast<double>(map.size());
+        const double expected = static_cast<double>(map.wanted);
+        if (missing > expected / 10 + 4 * std::sqrt(expected)) {
             return tell(map_status::partly, "partly filled, all " + paths + " used up");
         }
         tell(map_status::full, "full");
@@ -182,7 +209,10 @@ private:
     kinds wanted_{};
     kinds paths_{};
     std::array<std::string, 3> why_{};
+    std::uint32_t most_bounces_;
     bool piloting_{false};
+    bool endless_{false};
+    std::atomic<bool> stopped_{false};
 };
 
 }  // namespace detail
@@ -191,8 +221,8 @@ private:
 ///
 /// A map holds the photons of its first `paths` paths, and every path has its own fixed numbers: the same maps for any
 /// number of threads. Photons with NaN, infinite or negative power are dropped and counted in the ledger. Never
-/// endless: a map that can hold nothing ends `empty` or `left_out` and says why. Throws `std::invalid_argument` for an
-/// empty pilot.
+/// endless: a map that can hold nothing ends `empty` or `left_out` and says why. Stopped early, the maps hold what was
+/// found until then, with the power of as many paths as were walked. Throws `std::invalid_argument` for an empty pilot.
 template <Scene World, Emitter Lights, Executor Run = in_sequence>
 [[nodiscard]] auto trace_photons(const World& scene, const Lights& lights, const photon_options& options = {},
                                  const Run& run = {}) {

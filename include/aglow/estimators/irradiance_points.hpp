@@ -42,8 +42,8 @@ public:
     template <Executor Run = in_sequence>
     explicit irradiance_points(std::span<const irradiance_point<S, T>> points, const Run& run = {}) {
         std::vector<std::uint32_t> sound;
-        for (std::uint32_t i = 0; i < points.size(); ++i) {
-            if (is_radiance(points[i].irradiance)) { sound.push_back(i); }
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (is_radiance(points[i].irradiance)) { sound.push_back(static_cast<std::uint32_t>(i)); }
         }
         tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return points[i].position; }, run};
         stored_.reserve(tree_.size());
@@ -52,7 +52,7 @@ public:
             stored_.push_back({p.irradiance, p.error, p.radius, packed_direction<std::int8_t>{p.normal}});
         }
         tree_.forget_order();
-        reach_ = natural_reach();
+        measure();
     }
 
     [[nodiscard]] std::size_t size() const { return stored_.size(); }
@@ -60,17 +60,21 @@ public:
     /// Bytes in all.
     [[nodiscard]] std::size_t memory() const { return tree_.memory() + stored_.capacity() * sizeof(stored); }
 
-    /// The irradiance of the nearest point whose normal is within 37 degrees of unit `normal` and that lies close to
-    /// the tangent plane; empty where none is within reach. O(log n).
+    /// The irradiance of the nearest point whose normal is within 37 degrees of unit `normal` and that lies within 14
+    /// degrees of the tangent plane, so that a wall close behind does not answer; empty where none is within reach.
+    /// O(log n).
     [[nodiscard]] std::optional<reading> nearest(const vec3<T>& point, const vec3<T>& normal) const {
-        const T slab = reach_ / 8;
+        // Scratch only: what it holds never shows in a result.
+        static thread_local kd_scratch<T> scratch;
         const auto fits = [&](kd_slot i) {
-            return glm::dot(stored_[i].normal.template direction<T>(), normal) > T(0.8) &&
-                   std::abs(glm::dot(tree_.position(i) - point, normal)) <= slab;
+            if (!(glm::dot(stored_[i].normal.template direction<T>(), normal) > T(0.8))) { return false; }
+            const vec3<T> away = tree_.position(i) - point;
+            const T height = std::abs(glm::dot(away, normal)) - slack_;
+            return height <= 0 || square(4 * height) <= length2(away);
         };
-        const auto found = tree_.nearest_one(point, square(reach_), fits);
-        if (!found) { return std::nullopt; }
-        const stored& s = stored_[found->slot];
+        const auto found = tree_.nearest(point, 1, scratch, {.radius2 = square(reach_)}, fits);
+        if (found.empty()) { return std::nullopt; }
+        const stored& s = stored_[found.slots[0]];
         return reading{{s.irradiance, s.error}, s.radius};
     }
 
@@ -82,18 +86,20 @@ private:
         packed_direction<std::int8_t> normal;
     };
 
-    /// Eight times the spacing of points that lay evenly on the faces of their box.
-    [[nodiscard]] T natural_reach() const {
-        if (empty()) { return 0; }
+    /// Looks eight times as far as the spacing of points that lay evenly on the faces of their box.
+    void measure() {
+        if (empty()) { return; }
         const vec3<T> e = tree_.box().extent();
         const T area = 2 * (e.x * e.y + e.y * e.z + e.z * e.x);
         const T far = std::max(max_abs(tree_.box().low), max_abs(tree_.box().high));
-        return std::max(8 * std::sqrt(area / (pi<T> * static_cast<T>(size()))), 16 * position_error(far));
+        slack_ = position_error(far);
+        reach_ = std::max(8 * std::sqrt(area / (pi<T> * static_cast<T>(size()))), 16 * slack_);
     }
 
     kd_tree<T> tree_{};
     std::vector<stored> stored_{};
     T reach_{0};
+    T slack_{0};  ///< how far positions may lie off their surface
 };
 
 }  // namespace aglow

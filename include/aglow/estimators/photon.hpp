@@ -12,9 +12,9 @@ namespace aglow {
 /// A stored particle, without its position (which the index keeps). 24 bytes for RGB, 16 for gray.
 template <Spectrum S>
 struct photon {
-    S power{};                               ///< flux through the surface, W
-    packed_direction<std::int16_t> wi{};     ///< towards where it came from
-    packed_direction<std::int8_t> normal{};  ///< of the surface, on the side that it arrived on
+    S power{};                                ///< flux through the surface, W
+    packed_direction<std::int16_t> wi{};      ///< towards where it came from
+    packed_direction<std::int16_t> normal{};  ///< of the surface, on the side that it arrived on
 
     /// Whether it arrived on the side of a surface that `n` (unit) points out of.
     template <typename T>

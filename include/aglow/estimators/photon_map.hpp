@@ -28,14 +28,16 @@ public:
 
     photon_map() = default;
 
-    /// A map of `photons`, their power times `scale` (1 / emitted paths). Photons whose power is NaN, infinite or
-    /// negative, or whose position is not finite, are dropped and counted. The same map for any executor.
+    /// A map of `photons`, their power times `scale` (1 / emitted paths). Photons whose scaled power is NaN, infinite
+    /// or negative, or whose position is not finite, are dropped and counted. The same map for any executor.
     template <Executor Run = in_sequence>
     explicit photon_map(std::span<const landed_photon<S, T>> photons, T scale = 1, const Run& run = {}) {
         std::vector<std::uint32_t> sound;
         sound.reserve(photons.size());
-        for (std::uint32_t i = 0; i < photons.size(); ++i) {
-            if (is_radiance(photons[i].what.power)) { sound.push_back(i); }
+        for (std::size_t i = 0; i < photons.size(); ++i) {
+            if (is_radiance(S(photons[i].what.power * band_of<S>(scale)))) {
+                sound.push_back(static_cast<std::uint32_t>(i));
+            }
         }
         tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return photons[i].position; }, run};
         photons_.resize(tree_.size());
@@ -62,7 +64,9 @@ public:
 
     /// Irradiance at `point` in W/m², from photons that arrived on the side that unit `normal` points out of; black
     /// where none are near. k nearest within the largest radius: with all k found, the k-1 inner ones over the disc of
-    /// the k-th; with fewer, all over the largest disc. Either is unbiased where the density is even.
+    /// the k-th; with fewer, all over the largest disc. Together they are unbiased where the density is even. Where k
+    /// photons lie closer together than positions can tell, all that do are spread over the least disc that can be
+    /// told.
     [[nodiscard]] density_estimate<S, T> irradiance(const vec3<T>& point, const vec3<T>& normal,
                                                     const density_options& options = {}) const {
         const auto weigh = [](const photon<S>& p) { return p.power; };
@@ -101,6 +105,9 @@ private:
         least_radius_ = position_error(far);
     }
 
+    /// The least radius that positions can tell, for a search as far as `reach`.
+    [[nodiscard]] T least_radius(T reach) const { return std::max(least_radius_, position_error(reach)); }
+
     /// Side, plane and normal: what makes a photon one of this surface. Refused ones never count.
     [[nodiscard]] bool accepts(kd_slot i, const vec3<T>& point, const vec3<T>& normal,
                                const density_options& options) const {
@@ -129,10 +136,13 @@ private:
                                                  const Kernel& kernel, Accept& accept, Weigh& weigh) const {
         // Scratch only: what it holds never shows in a result.
         static thread_local kd_scratch<T> scratch;
-        const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(options.count);
-        const auto found = tree_.nearest(point, options.count, scratch, {.radius2 = square(reach)}, accept);
+        const std::uint32_t count = std::max(2u, options.count);
+        const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(count);
+        const auto found = tree_.nearest(point, count, scratch, {.radius2 = square(reach)}, accept);
         const T radius2 = found.radius2 * square(static_cast<T>(options.shrink));
-        density_sum<Kernel> sum{kernel, std::max(radius2, square(least_radius_))};
+        const T least2 = square(least_radius(reach));
+        if (radius2 < least2) { return over(point, least2, kernel, accept, weigh); }
+        density_sum<Kernel> sum{kernel, radius2};
         for (std::size_t i = 0; i < found.size(); ++i) {
             sum.add(found.distances2[i], photons_[found.slots[i]], weigh);
         }
@@ -143,7 +153,14 @@ private:
     [[nodiscard]] density_estimate<S, T> within(const vec3<T>& point, const density_options& options,
                                                 const Kernel& kernel, Accept& accept, Weigh& weigh) const {
         const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(50);
-        density_sum<Kernel> sum{kernel, std::max(square(reach), square(least_radius_))};
+        return over(point, square(std::max(reach, least_radius(reach))), kernel, accept, weigh);
+    }
+
+    /// All photons within one radius.
+    template <typename Kernel, typename Accept, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> over(const vec3<T>& point, T radius2, const Kernel& kernel, Accept& accept,
+                                              Weigh& weigh) const {
+        density_sum<Kernel> sum{kernel, radius2};
         tree_.within(point, sum.radius2, [&](kd_slot i, T distance2) {
             if (accept(i)) { sum.add(distance2, photons_[i], weigh); }
         });
@@ -158,7 +175,7 @@ private:
         T radius2;
         S wide{};
         S narrow{};
-        B noise2{0};
+        double noise2{0};  ///< squares of faint light leave the range of floats
         std::uint32_t count{0};
 
         template <typename Weigh>
@@ -169,16 +186,18 @@ private:
             const S flux = weigh(p);
             const S share = flux * B(kernel(rho2));
             wide = wide + share;
-            noise2 += square(max_component(share));
+            noise2 += square(static_cast<double>(max_component(share)));
             if (rho2 < T(0.25)) { narrow = narrow + flux * B(4 * kernel(4 * rho2)); }
             ++count;
         }
 
         [[nodiscard]] density_estimate<S, T> result() const {
+            if (!(radius2 > 0)) { return {}; }
             const B scale = B(1 / radius2);
             const S apart = wide + narrow * B(-1);
             const B bias = std::max(max_component(apart), max_component(S(apart * B(-1))));
-            return {{wide * scale, (bias + 2 * std::sqrt(noise2)) * scale}, count, std::sqrt(radius2)};
+            const B noise = B(std::sqrt(noise2));
+            return {{wide * scale, (bias + 2 * noise) * scale}, count, std::sqrt(radius2)};
         }
     };
 
