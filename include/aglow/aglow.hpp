@@ -31,6 +31,7 @@
 #include <aglow/concepts/surface.hpp>
 
 // containers: where things are
+#include <aglow/containers/frozen_discs.hpp>
 #include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_layout.hpp>

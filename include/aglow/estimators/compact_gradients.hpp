@@ -79,6 +79,9 @@ inline constexpr std::size_t packed_bands<vec3<float>> = 3;
 [[nodiscard]] inline float band(float a, std::size_t) { return a; }
 [[nodiscard]] inline float band(const vec3<float>& a, std::size_t b) { return a[static_cast<int>(b)]; }
 
+[[nodiscard]] inline float lowest_band(float a) { return a; }
+[[nodiscard]] inline float lowest_band(const vec3<float>& a) { return std::min(std::min(a.x, a.y), a.z); }
+
 /// A number in [-1, 1] as a 16-bit integer.
 [[nodiscard]] inline std::int16_t packed_unit(float x) {
     return static_cast<std::int16_t>(std::lrint(std::clamp(x, -1.f, 1.f) * 32767.f));
@@ -105,8 +108,8 @@ public:
     }
 
     [[nodiscard]] S extrapolate(const S& irradiance, const record_offset<float>& at) const {
-        const std::array<float, 4> k{at.x / 32767.f, at.y / 32767.f, at.turn_x * (steepest_turn / 32767.f),
-                                     at.turn_y * (steepest_turn / 32767.f)};
+        const std::array<float, 4> k{at.x * step, at.y * step, at.turn_x * (steepest_turn * step),
+                                     at.turn_y * (steepest_turn * step)};
         S change{};
         if constexpr (bands == 1) {
             change = sum(0, k);
@@ -114,7 +117,7 @@ public:
             change = S{sum(0, k), sum(1, k), sum(2, k)};
         }
         // One factor for all bands keeps the hue of the change.
-        const float least = -max_component(S(change * -1.f));
+        const float least = detail::lowest_band(change);
         return least < -lowest ? irradiance + irradiance * change * (lowest / -least)
                                : irradiance + irradiance * change;
     }
@@ -122,14 +125,15 @@ public:
     [[nodiscard]] compact_gradients rescaled(float from, float to) const {
         compact_gradients result = *this;
         for (std::size_t b = 0; b < bands; ++b) {
-            result.set_translation(b, static_cast<float>(codes_[b]) / 32767.f * (to / from),
-                                   static_cast<float>(codes_[bands + b]) / 32767.f * (to / from));
+            result.set_translation(b, static_cast<float>(codes_[b]) * step * (to / from),
+                                   static_cast<float>(codes_[bands + b]) * step * (to / from));
         }
         return result;
     }
 
 private:
     static constexpr std::size_t bands = detail::packed_bands<S>;
+    static constexpr float step = 1 / 32767.f;
     static constexpr float steepest_turn = 4;  // a quarter radian may change everything
     static constexpr float lowest = 0.95f;     // and never take all away
 

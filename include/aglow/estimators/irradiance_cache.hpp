@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <aglow/concepts/spectrum.hpp>
+#include <aglow/containers/frozen_discs.hpp>
 #include <aglow/containers/octree.hpp>
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/numbers.hpp>
@@ -73,15 +74,11 @@ inline void check(const irradiance_cache_options& o) {
                    o.lookup.minimum_weight);
 }
 
-/// Asks the records of a tree whose spheres cover `point`. Items have `.record` and `.bend`.
-template <typename S, typename T, typename Tree, typename Counters>
-[[nodiscard]] irradiance_answer<S, T> ask(const Tree& tree, const vec3<T>& point, const vec3<T>& normal,
-                                          const lookup_limits<T>& limits, Counters& counters) {
-    record_blend<S, T> blend{point, normal, limits};
-    tree.visit_covering(point, [&](const auto& item) { count(counters, blend.add(item.record, item.bend)); });
-    const irradiance_answer<S, T> answer = blend.answer();
-    count_lookup(counters, static_cast<bool>(answer));
-    return answer;
+/// How far off its plane a record can speak, in reaches: the tolerance of the plane test, and what the mean of two
+/// normals that differ by the limit adds to it over the longest way.
+template <std::floating_point T>
+[[nodiscard]] T relative_height(const lookup_limits<T>& limits) {
+    return limits.plane + std::sqrt(limits.turn / 2);
 }
 
 }  // namespace detail
@@ -94,10 +91,26 @@ public:
     using spectrum = S;
     using scalar = T;
 
+    /// A record, and its error at its own radius relative to its irradiance.
+    struct item {
+        irradiance_record<S, T, Features> record;
+        T bend;
+    };
+
     /// Holds nothing and answers nothing.
-    frozen_irradiance_cache() : frozen_irradiance_cache{irradiance_cache_options{}} {}
-    explicit frozen_irradiance_cache(const irradiance_cache_options& options)
-        : options_{options}, limits_{options.lookup, options.reach.metric} {}
+    frozen_irradiance_cache() : frozen_irradiance_cache{std::vector<item>{}, irradiance_cache_options{}} {}
+
+    /// The order of the items is the order of summing.
+    frozen_irradiance_cache(std::vector<item> items, const irradiance_cache_options& options)
+        : items_{std::move(items)}, options_{options}, limits_{options.lookup, options.reach.metric} {
+        std::vector<thick_disc<T>> discs;
+        discs.reserve(items_.size());
+        for (const item& i : items_) {
+            const T reach = i.record.longest_radius();
+            discs.push_back({i.record.position(), reach, i.record.normal(), detail::relative_height(limits_) * reach});
+        }
+        discs_ = frozen_discs<T>{discs};
+    }
 
     /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal) const {
@@ -107,31 +120,42 @@ public:
     template <typename Counters>
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
                                                  Counters& counters) const {
-        return detail::ask<S, T>(tree_, point, normal, limits_, counters);
+        record_blend<S, T> blend{point, normal, limits_};
+        std::span<const std::uint32_t> left = discs_.candidates(point);
+        while (!left.empty()) {
+            std::uint32_t near[chunk];
+            const std::span<const std::uint32_t> now = left.first(std::min(chunk, left.size()));
+            std::size_t count = 0;
+            // Without a branch: which of them reach is what a processor cannot guess.
+            for (const std::uint32_t i : now) {
+                near[count] = i;
+                count += items_[i].record.may_reach(distance2(point, items_[i].record.position()));
+            }
+            for (std::size_t k = 0; k < count; ++k) {
+                const item& one = items_[near[k]];
+                detail::count(counters, blend.add(one.record, one.bend));
+            }
+            left = left.subspan(now.size());
+        }
+        const irradiance_answer<S, T> answer = blend.answer();
+        detail::count_lookup(counters, static_cast<bool>(answer));
+        return answer;
     }
 
-    [[nodiscard]] std::uint32_t size() const { return tree_.size(); }
-    [[nodiscard]] const record& operator[](std::uint32_t index) const { return tree_[index].record; }
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(items_.size()); }
+    [[nodiscard]] const record& operator[](std::uint32_t index) const { return items_[index].record; }
     [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
 
     /// Bytes taken from the heap.
-    [[nodiscard]] std::size_t bytes() const { return tree_.bytes(); }
-
-    /// Appends a record with its error at its own radius, relative to its irradiance; the order of appending is the
-    /// order of summing. False where the reach cannot be stored.
-    bool append(const record& r, T bend) {
-        return static_cast<bool>(tree_.insert({r, bend}, r.position(), r.longest_radius()));
-    }
+    [[nodiscard]] std::size_t bytes() const { return items_.capacity() * sizeof(item) + discs_.bytes(); }
 
 private:
-    struct item {
-        irradiance_record<S, T, Features> record;
-        T bend;
-    };
+    static constexpr std::size_t chunk = 64;
 
+    std::vector<item> items_;
     irradiance_cache_options options_;
     detail::lookup_limits<T> limits_;
-    octree<item, T> tree_;
+    frozen_discs<T> discs_;
 };
 
 /// An irradiance cache that grows. Lookups are safe from many threads while nobody inserts.
@@ -163,7 +187,11 @@ public:
     template <typename Counters>
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
                                                  Counters& counters) const {
-        return detail::ask<S, T>(tree_, point, normal, limits_, counters);
+        record_blend<S, T> blend{point, normal, limits_};
+        tree_.visit_covering(point, [&](const item& i) { detail::count(counters, blend.add(i.record, i.bend)); });
+        const irradiance_answer<S, T> answer = blend.answer();
+        detail::count_lookup(counters, static_cast<bool>(answer));
+        return answer;
     }
 
     /// The reach that `e` would have here, neighbours apart. `footprint`: diameter of a pixel at the point, 0 for none.
@@ -199,13 +227,14 @@ public:
     /// how far off its extrapolation is: the upper quartile of |E_i + grad d - E_j| / d², without the noise of both.
     template <Executor E = in_sequence>
     [[nodiscard]] frozen freeze(const E& run = {}) const {
-        std::vector<T> bends(size());
-        for_each_block(run, bends.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) { bends[i] = learnt_bend(tree_[static_cast<std::uint32_t>(i)]); }
+        std::vector<typename frozen::item> items(size());
+        for_each_block(run, items.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const item& one = tree_[static_cast<std::uint32_t>(i)];
+                items[i] = {one.record, learnt_bend(one)};
+            }
         });
-        frozen result{options_};
-        for (std::uint32_t i = 0; i < size(); ++i) { result.append(tree_[i].record, bends[i]); }
-        return result;
+        return frozen{std::move(items), options_};
     }
 
 private:
@@ -262,7 +291,7 @@ private:
         tree_.visit_within(r.position(), r.longest_radius(), [&](const item& other) {
             if (other.index == one.index) { return; }
             const vec3<T> n = other.record.normal();
-            const vec3<T> local = axes.to_local(other.record.position() - r.position());
+            const vec3<T> local = r.local(other.record.position(), axes);
             const T t2 = r.distance2(local);
             if (!(t2 < 1) || !(t2 > T(0.01)) || length2(n - axes.z) / 2 > limits_.turn) { return; }
             errors.push_back(disagreement(r, other.record, r.extrapolate(local, axes.to_local(n))) / t2);

@@ -50,13 +50,13 @@ public:
     }
     template <typename T>
     [[nodiscard]] vec2<T> value() const {
-        return {static_cast<T>(codes_[0]) / T(65534), static_cast<T>(codes_[1]) / T(65534)};
+        return {static_cast<T>(codes_[0]) * T(0x1p-16), static_cast<T>(codes_[1]) * T(0x1p-16)};
     }
 
 private:
     template <typename T>
     static std::int16_t code(T x) {
-        return static_cast<std::int16_t>(std::lround(std::clamp(x, T(-0.5), T(0.5)) * T(65534)));
+        return static_cast<std::int16_t>(std::lround(std::clamp(x * T(65536), T(-32767), T(32767))));
     }
     std::array<std::int16_t, 2> codes_{};
 };
@@ -120,6 +120,16 @@ public:
     /// The shorter semi-axis of the reach.
     [[nodiscard]] T radius() const { return radius_; }
 
+    /// Whether a squared distance from the position is within the longer semi-axis: a quick first test.
+    [[nodiscard]] bool may_reach(T squared_distance) const {
+        if constexpr (Features.ellipse) {
+            const vec2<T> e = ellipse_.template value<T>();
+            return squared_distance * (1 - 2 * std::sqrt(e.x * e.x + e.y * e.y)) < radius_ * radius_;
+        } else {
+            return squared_distance < radius_ * radius_;
+        }
+    }
+
     /// The longer semi-axis, rounded upwards: beyond it the record has no weight.
     [[nodiscard]] T longest_radius() const {
         if constexpr (Features.ellipse) {
@@ -143,28 +153,30 @@ public:
     /// The record's axes: what its gradients and its ellipse are given in.
     [[nodiscard]] frame<T> axes() const { return frame<T>{normal()}; }
 
-    /// Squared distance of a point, given in `axes()` from the position, in units of the reach: below 1 inside the
-    /// ellipsoid whose third semi-axis is the shorter one.
-    [[nodiscard]] T distance2(const vec3<T>& local) const {
-        const T inverse = 1 / radius_;
-        const T x = local.x * inverse;
-        const T y = local.y * inverse;
-        const T z = local.z * inverse;
+    /// Where a point of the world lies: in `axes`, from the position, in units of the radius.
+    [[nodiscard]] vec3<T> local(const vec3<T>& point, const frame<T>& axes) const {
+        return axes.to_local(point - position_) * (1 / radius_);
+    }
+
+    /// Squared distance of a `local` point in units of the reach: below 1 inside the ellipsoid whose third semi-axis is
+    /// the shorter one.
+    [[nodiscard]] T distance2(const vec3<T>& p) const {
         if constexpr (Features.ellipse) {
             const vec2<T> e = ellipse_.template value<T>();
             const T round = 1 - std::sqrt(e.x * e.x + e.y * e.y);
-            return std::max(T(0), round * (x * x + y * y) + e.x * (x * x - y * y) + e.y * (2 * x * y)) + z * z;
+            const T flat = round * (p.x * p.x + p.y * p.y) + e.x * (p.x * p.x - p.y * p.y) + e.y * (2 * p.x * p.y);
+            return std::max(T(0), flat) + p.z * p.z;
         } else {
-            return x * x + y * y + z * z;
+            return length2(p);
         }
     }
 
-    /// Irradiance at a point (in `axes()` from the position) whose normal is `n` (in `axes()`), to first order; never
-    /// negative. Within the reach the change is at most the irradiance itself.
-    [[nodiscard]] S extrapolate(const vec3<T>& local, const vec3<T>& n) const {
+    /// Irradiance at a `local` point whose normal is `n`, along `axes()`; to first order, never negative. Within the
+    /// reach the change is at most about the irradiance itself.
+    [[nodiscard]] S extrapolate(const vec3<T>& p, const vec3<T>& n) const {
         if constexpr (Features.gradients) {
             // (0, 0, 1) x n
-            return gradients_.extrapolate(irradiance_, {local.x / radius_, local.y / radius_, -n.y, n.x});
+            return gradients_.extrapolate(irradiance_, {p.x, p.y, -n.y, n.x});
         } else {
             return irradiance_;
         }

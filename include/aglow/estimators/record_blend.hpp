@@ -121,14 +121,14 @@ public:
     /// `bend`: how much the record errs by at its own radius, relative to its irradiance.
     template <record_features F>
     detail::verdict add(const irradiance_record<S, T, F>& record, T bend) {
+        const vec3<T> way = point_ - record.position();
         const frame<T> axes = record.axes();
         const T turn = length2(normal_ - axes.z) / 2;
         if (!(turn < limits_.turn)) { return detail::verdict::normal; }
-        const vec3<T> way = point_ - record.position();
         if (std::abs(glm::dot(way, normal_ + axes.z)) > 2 * limits_.plane * record.radius()) {
             return detail::verdict::plane;
         }
-        const vec3<T> local = axes.to_local(way);
+        const vec3<T> local = record.local(point_, axes);
         const T t2 = record.distance2(local);
         if (!(t2 < 1)) { return detail::verdict::distance; }
         const T weight = detail::record_weight(limits_.metric, t2, turn / limits_.turn);
