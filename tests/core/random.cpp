@@ -41,8 +41,8 @@ double first(const path_key& key, std::uint32_t bounce, purpose why) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("random: numbers are uniform in [0, 1), alone and in pairs, along a stream and across", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("random: numbers are uniform from 0 to below 1, alone and in pairs, along a stream and across", "",
+                   float, double) {
     using T = TestType;
     aglow::random_sampler<T> along{1};
     statistics::sample_mean mean;

@@ -1,5 +1,7 @@
 #include "common/image_io.hpp"
 
+#include <stdlib.h>  // mkdtemp
+
 #include <fstream>
 #include <limits>
 
@@ -11,9 +13,8 @@ namespace fs = std::filesystem;
 
 /// A folder of this test's own, gone afterwards.
 struct scratch {
-    fs::path folder{fs::temp_directory_path() /
-                    ("aglow_image_io_" + std::to_string(std::hash<std::string>{}(fs::current_path().string())))};
-    scratch() { fs::create_directories(folder); }
+    std::string name = (fs::temp_directory_path() / "aglow_image_io_XXXXXX").string();
+    fs::path folder{::mkdtemp(name.data())};
     ~scratch() { fs::remove_all(folder); }
 };
 
