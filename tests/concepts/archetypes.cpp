@@ -89,6 +89,14 @@ namespace near_numbers {
 struct without_pairs {
     float next_1d();
 };
+struct closed_pairs {
+    struct pair {
+        float x;
+        float y;
+    };
+    float next_1d();
+    pair next_2d();
+};
 struct whole {
     int next_1d();
     aglow::vec2<int> next_2d();
@@ -101,7 +109,7 @@ struct changes_when_asked {
     changes_when_asked fork(std::uint64_t) const;
 };
 
-static_assert(!aglow::Sampler<without_pairs> && !aglow::Sampler<whole>);
+static_assert(!aglow::Sampler<without_pairs> && !aglow::Sampler<closed_pairs> && !aglow::Sampler<whole>);
 static_assert(!aglow::Sampler<const aglow::random_sampler<float>>, "drawing changes a sampler");
 static_assert(!aglow::Numbers<without_fork> && !aglow::Numbers<changes_when_asked>);
 

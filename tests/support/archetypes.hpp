@@ -55,9 +55,6 @@ public:
     }
     friend constexpr spectrum white(std::type_identity<spectrum>) { return {T(1), T(1)}; }
 
-    void operator&() const = delete;
-    friend void operator,(const spectrum&, const auto&) = delete;
-
 private:
     constexpr spectrum(T a, T b) : bands_{a, b} {}
     std::array<T, 2> bands_{};
@@ -69,7 +66,7 @@ struct point {
     T x;
     T y;
     T z;
-    operator vec3<T>() const { return {x, y, z}; }  // NOLINT: hosts' vectors convert silently, as here
+    operator vec3<T>() const { return {x, y, z}; }  // NOLINT: as above
 };
 
 /// A direction of the host's own kind, of which only the way into the library's vectors is known.
@@ -104,6 +101,7 @@ public:
     struct pair {
         T x;
         T y;
+        operator aglow::vec2<T>() const { return {x, y}; }  // NOLINT: hosts' vectors convert silently, as here
     };
 
     explicit sampler(std::uint64_t start) : random_{start} {}
@@ -297,6 +295,28 @@ public:
 
 private:
     spectrum<T> intensity_;
+};
+
+/// The same light, both ways: what integrators on photon maps ask.
+template <std::floating_point T>
+class lamp : public states_scalar<T> {
+public:
+    explicit lamp(const spectrum<T>& intensity) : sent_{intensity}, seen_{intensity} {}
+    lamp(const lamp&) = delete;
+    lamp& operator=(const lamp&) = delete;
+
+    template <aglow::Sampler R>
+    [[nodiscard]] typename emitter<T>::particle emit(R& random) const {
+        return sent_.emit(random);
+    }
+    template <aglow::Sampler R>
+    [[nodiscard]] maybe<typename illuminator<T>::look> illuminate(const vec3<T>& from, R& random) const {
+        return seen_.illuminate(from, random);
+    }
+
+private:
+    emitter<T> sent_;
+    illuminator<T> seen_;
 };
 
 /// Runs the tasks on the calling thread, the last one first. Neither copied nor assigned.

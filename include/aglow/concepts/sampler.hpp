@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <aglow/core/random.hpp>
+#include <aglow/core/vec.hpp>
 
 namespace aglow {
 
@@ -13,6 +14,7 @@ namespace aglow {
 template <typename R>
 concept Sampler = requires(R& random) {
     { random.next_1d() } -> std::floating_point;
+    { random.next_2d() } -> std::convertible_to<vec2<decltype(random.next_1d())>>;
     { random.next_2d().x } -> std::convertible_to<decltype(random.next_1d())>;
     { random.next_2d().y } -> std::convertible_to<decltype(random.next_1d())>;
 };

@@ -1,0 +1,96 @@
+// Every integrator with the smallest host there is: it compiles, so it asks for no more than the concepts; and it finds
+// the closed form, so the concepts say enough. Inside a matte unit sphere of albedo r, with a light of intensity I at
+// the centre, the radiance is I r / (pi (1 - r)) everywhere: I / pi for r = 1/2.
+#include "support/archetypes.hpp"
+
+#include <cstdint>
+#include <vector>
+
+#include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/path_trace.hpp>
+#include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/algorithms/trace_photons.hpp>
+
+#include "support/catch.hpp"
+#include "support/statistics.hpp"
+
+namespace {
+
+using aglow::vec3;
+
+static_assert(aglow::Emitter<archetypes::lamp<float>> && aglow::Illuminator<archetypes::lamp<double>>);
+
+template <typename T>
+archetypes::spectrum<T> intensity() {
+    return archetypes::spectrum<T>::of(aglow::pi<T>, aglow::pi<T> / 4);
+}
+
+/// A ray from near the centre; the unit square goes around the whole sphere.
+template <typename T>
+aglow::ray<T> all_around(const aglow::vec2<T>& u) {
+    return {{T(0.1), T(0.2), T(-0.1)}, aglow::uniform_sphere(glm::clamp(u, T(0), T(1)))};
+}
+
+/// Radiance in both bands along rays from near the centre; should be 1 and 1/4.
+template <typename T, typename Integrator>
+std::vector<statistics::sample_mean> radiance(const Integrator& integrator, std::uint64_t rays) {
+    std::vector<statistics::sample_mean> bands(2);
+    for (std::uint64_t i = 0; i < rays; ++i) {
+        const archetypes::numbers<T> numbers{{1, 0, i}};
+        aglow::random_sampler<T> random{aglow::mix(i)};
+        const archetypes::spectrum<T> seen = integrator(all_around<T>(random.next_2d()), numbers).value;
+        bands[0].add(double(seen.bands()[0]));
+        bands[1].add(double(seen.bands()[1]));
+    }
+    return bands;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("archetypes: path tracing finds the closed form", "", float, double) {
+    using T = TestType;
+    const archetypes::scene<T> scene;
+    const archetypes::illuminator<T> light{intensity<T>()};
+    const auto bands = radiance<T>(aglow::path_tracer{scene, light}, 20'000);
+    INFO(bands[0].mean() << ", " << bands[1].mean());
+    CHECK(bands[0].agrees(1, 4));
+    CHECK(bands[1].agrees(0.25, 4));
+}
+
+TEMPLATE_TEST_CASE("archetypes: photons keep the books of the closed form", "", float, double) {
+    using T = TestType;
+    const archetypes::scene<T> scene;
+    const archetypes::emitter<T> light{intensity<T>()};
+    const archetypes::executor run;
+    const auto maps = aglow::trace_photons(scene, light, {.direct = 5000, .indirect = 5000}, run);
+    CHECK(maps.direct.status == aglow::map_status::full);
+    CHECK(maps.indirect.status == aglow::map_status::full);
+    CHECK(maps.ledger.escaped == 0);
+    CHECK(maps.ledger.dropped == 0);
+}
+
+TEMPLATE_TEST_CASE("archetypes: the photon map, gathered and cached too, is within a hundredth of the closed form", "",
+                   float, double) {
+    using T = TestType;
+    const archetypes::scene<T> scene;
+    const archetypes::lamp<T> light{intensity<T>()};
+    const archetypes::executor run;
+    const auto near_truth = [](const auto& integrator, std::uint64_t rays) {
+        const auto bands = radiance<T>(integrator, rays);
+        INFO(bands[0].mean() << ", " << bands[1].mean());
+        CHECK(bands[0].mean() == Approx(1).epsilon(0.01));
+        CHECK(bands[1].mean() == Approx(0.25).epsilon(0.01));
+    };
+    const auto eye = [](const aglow::vec2<T>& film) { return all_around<T>(film * (T(1) / 16)); };
+    aglow::bounds<T> box;
+    box.add({-1, -1, -1});
+    box.add({1, 1, 1});
+    const aglow::caching_options caching{.view = {.width = 16, .height = 16}};
+    near_truth(aglow::irradiance_caching{scene, light, box, eye, caching, run}, 200);
+    near_truth(
+        aglow::gather_caching{
+            scene, light, box, eye, {.photons = {.direct = 5000, .indirect = 20'000}, .caching = caching}, run},
+        200);
+    near_truth(aglow::photon_mapping{scene, light, {.photons = {.indirect = 20'000}}, run}, 1000);
+    near_truth(aglow::final_gathering{scene, light, {.photons = {.direct = 5000, .indirect = 20'000}}, run}, 200);
+}
