@@ -80,6 +80,7 @@
 #include <aglow/algorithms/photon_options.hpp>
 #include <aglow/algorithms/photon_source.hpp>
 #include <aglow/algorithms/photon_walk.hpp>
+#include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/plan.hpp>
 #include <aglow/algorithms/precompute_irradiance.hpp>
 #include <aglow/algorithms/progressive.hpp>

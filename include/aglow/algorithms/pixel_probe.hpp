@@ -1,0 +1,43 @@
+// A fresh, independent look at one pixel: what an audit asks of an unbiased integrator.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <aglow/concepts/light.hpp>
+#include <aglow/core/sobol.hpp>
+
+namespace aglow {
+
+/// An unbiased estimate of pixels of the picture that `eye` and `Integrator` make, box-filtered as a `film` is; a
+/// `Probe` of aglow/report/audit.hpp. Its numbers depend on (pixel, seed) alone, so the same call gives the same
+/// answer. Keeps references; `const`, safe from many threads where the integrator is.
+template <typename Eye, typename Integrator>
+class pixel_probe {
+public:
+    using spectrum = typename Integrator::spectrum;
+
+    pixel_probe(const Eye& eye, const Integrator& integrator, std::size_t width)
+        : eye_{eye}, integrator_{integrator}, width_{width} {}
+
+    /// Mean of `count` stratified samples of pixel number `pixel`, row by row from the top. Samples of different seeds
+    /// are independent.
+    [[nodiscard]] spectrum operator()(std::size_t pixel, std::uint64_t seed, std::size_t count) const {
+        using T = typename Integrator::scalar;
+        spectrum sum{};
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const sobol_numbers<T> numbers{{mix(seed, 1), seed, pixel}, i};
+            const vec2<T> u = numbers.at(0, purpose::camera).next_2d();
+            const vec2<T> film{static_cast<T>(pixel % width_) + u.x, static_cast<T>(pixel / width_) + u.y};
+            sum = sum + integrator_(eye_(film), numbers).value;
+        }
+        return sum * (1 / static_cast<band_of<spectrum>>(count));
+    }
+
+private:
+    const Eye& eye_;
+    const Integrator& integrator_;
+    std::size_t width_;
+};
+
+}  // namespace aglow
