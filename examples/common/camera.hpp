@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/ray.hpp>
@@ -29,6 +31,19 @@ struct camera {
         const T x = (film.x - T(width) / 2) / half * tangent;
         const T y = (half - film.y) / half * tangent;
         return {.origin = origin, .direction = glm::normalize(forward + right * x + above * y)};
+    }
+
+    /// Where `place` appears on the film; empty where it does not.
+    [[nodiscard]] std::optional<vec2<T>> film_point(const vec3<T>& place, std::size_t width, std::size_t height) const {
+        const vec3<T> right = glm::normalize(glm::cross(forward, up));
+        const vec3<T> above = glm::cross(right, forward);
+        const vec3<T> to = place - origin;
+        const T depth = glm::dot(to, forward);
+        if (!(depth > 0)) { return std::nullopt; }
+        const T scale = T(height) / (2 * tangent * depth);
+        const vec2<T> film{T(width) / 2 + glm::dot(to, right) * scale, T(height) / 2 - glm::dot(to, above) * scale};
+        if (!(film.x >= 0 && film.y >= 0 && film.x < T(width) && film.y < T(height))) { return std::nullopt; }
+        return film;
     }
 };
 

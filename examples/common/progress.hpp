@@ -26,8 +26,9 @@ namespace host {
     return text;
 }
 
-/// One phase of work. `advance` may be called from many threads; it draws at most ten times a second on a terminal, and
-/// a line every tenth of the work elsewhere. Writes to standard error, so that results on standard output stay clean.
+/// One phase of work. `show` may be called from many threads; it draws at most ten times a second on a terminal.
+/// Elsewhere it prints a line at a tenth of the work, two seconds apart at least. Writes to standard error, so that
+/// results on standard output stay clean.
 class progress {
 public:
     explicit progress(std::string what, std::FILE* out = stderr)
@@ -76,8 +77,10 @@ private:
     }
     void print_line(double share) {
         const int tenth = static_cast<int>(share * 10);
-        if (tenth <= tenth_ || share >= 1) { return; }
+        const double now = elapsed();
+        if (tenth <= tenth_ || share >= 1 || now - drawn_ < 2) { return; }
         tenth_ = tenth;
+        drawn_ = now;
         std::fprintf(out_, "%s: %d %%, %s left\n", what_.c_str(), tenth * 10, left(share).c_str());
         std::fflush(out_);
     }
@@ -89,7 +92,7 @@ private:
     std::FILE* out_;
     bool terminal_;
     std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
-    double drawn_{-1};
+    double drawn_{0};
     int tenth_{0};
     bool finished_{false};
     std::mutex guard_{};

@@ -1,0 +1,110 @@
+#include "render/options.hpp"
+
+#include <charconv>
+#include <iostream>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+#include "render/usage_error.hpp"
+
+namespace host {
+namespace {
+
+const std::map<std::string, method> methods{{"path", method::path},
+                                            {"irradiance-cache", method::irradiance_cache},
+                                            {"photon-map", method::photon_map},
+                                            {"final-gather", method::final_gather},
+                                            {"gather-cache", method::gather_cache}};
+
+const std::map<std::string, view> views{{"beauty", view::beauty},     {"direct", view::direct},
+                                        {"indirect", view::indirect}, {"caustic", view::caustic},
+                                        {"records", view::records},   {"photons", view::photons}};
+
+template <typename Choice>
+Choice chosen(const std::map<std::string, Choice>& choices, const std::string& option, const std::string& word) {
+    const auto found = choices.find(word);
+    if (found != choices.end()) { return found->second; }
+    std::string known;
+    for (const auto& [name, value] : choices) { known += (known.empty() ? "" : ", ") + name; }
+    throw usage_error(option + " " + word + ": there is only " + known);
+}
+
+std::size_t pixels(const std::string& text, const std::string& number) {
+    std::size_t n = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), n);
+    if (error != std::errc{} || end != number.data() + number.size() || n < 1 || n > 32768) {
+        throw usage_error("--size " + text + ": two numbers from 1 to 32768 are needed, such as 640x480");
+    }
+    return n;
+}
+
+/// Sets width and height from text like 640x480.
+void read_size(const std::string& text, render_options& options) {
+    const std::size_t cross = text.find('x');
+    options.width = pixels(text, text.substr(0, cross));
+    options.height = pixels(text, cross == std::string::npos ? "" : text.substr(cross + 1));
+}
+
+/// The first line of what CLI11 complains of.
+std::string one_line(std::string text) {
+    const std::size_t end = text.find('\n');
+    return end == std::string::npos ? text : text.substr(0, end);
+}
+
+}  // namespace
+
+std::string name_of(method how) {
+    for (const auto& [name, value] : methods) {
+        if (value == how) { return name; }
+    }
+    return {};
+}
+
+std::optional<render_options> read_options(int count, const char* const* words) {
+    render_options o;
+    std::string how = "gather-cache";
+    std::string show = "beauty";
+    std::string size;
+    CLI::App app{"Renders a picture of a built-in scene or of a model file.", "render"};
+    app.add_option("SCENE", o.scene, "a built-in scene (see --list) or a model file (OBJ, glTF 2, PLY)");
+    app.add_option("--method", how, "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
+    app.add_option("--output", o.output, "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
+    app.add_option("--spp", o.samples, "samples per pixel [16]")->check(CLI::Range(1u, 1u << 24));
+    app.add_option("--time", o.seconds, "seconds in all: as many samples as fit, instead of --spp")
+        ->check(CLI::Range(0.01, 1e7));
+    app.add_option("--threads", o.threads, "threads; the picture does not depend on them [all cores]")
+        ->check(CLI::Range(1u, 1024u));
+    app.add_option("--seed", o.seed, "another seed, other noise [0]");
+    app.add_option("--size", size, "width x height in pixels [256x256]");
+    app.add_option("--caustic-photons", o.caustic_photons, "photons wanted in the caustic map");
+    app.add_option("--indirect-photons", o.indirect_photons, "photons wanted in the indirect map");
+    app.add_option("--direct-photons", o.direct_photons, "photons wanted in the direct map");
+    app.add_option("--estimate", o.photons_per_estimate, "photons per estimate")->check(CLI::Range(2u, 100000u));
+    app.add_option("--gather-rays", o.gather_rays, "rays of each final gather or cache record")
+        ->check(CLI::Range(1u, 1u << 20));
+    app.add_option("--accuracy", o.accuracy, "of the irradiance cache: smaller is finer")
+        ->check(CLI::Range(1e-4, 10.0));
+    app.add_option("--view", show, "beauty, direct, indirect, caustic, records or photons [beauty]");
+    app.add_flag("--layers", o.layers, "also write direct, indirect and caustic light as layers");
+    app.add_option("--exposure", o.exposure, "of the PNG: a factor [1]")->check(CLI::Range(1e-6f, 1e6f));
+    app.add_flag("--list", o.list, "list the built-in scenes");
+    try {
+        app.parse(count, words);
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return std::nullopt;
+    } catch (const CLI::ParseError& e) { throw usage_error(one_line(e.what())); }
+    if (o.list) { return o; }
+    if (o.scene.empty()) { throw usage_error("no scene is named; --list shows the built-in ones, --help the options"); }
+    o.how = chosen(methods, "--method", how);
+    o.show = chosen(views, "--view", show);
+    if (!size.empty()) { read_size(size, o); }
+    if (o.output.empty()) { o.output = std::filesystem::path{o.scene}.stem().string() + ".exr"; }
+    if (o.output.extension() != ".exr" && o.output.extension() != ".png") {
+        throw usage_error("--output " + o.output.string() + ": the name must end in .exr or .png");
+    }
+    return o;
+}
+
+}  // namespace host

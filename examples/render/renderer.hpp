@@ -1,0 +1,336 @@
+// Renders a scene by any of the library's ready integrators, and takes their pictures apart.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/film.hpp>
+#include <aglow/algorithms/layered_integrator.hpp>
+#include <aglow/algorithms/path_trace.hpp>
+#include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/algorithms/plan.hpp>
+
+#include "common/camera.hpp"
+#include "common/light_set.hpp"
+#include "common/progress.hpp"
+#include "render/options.hpp"
+#include "render/report.hpp"
+#include "render/usage_error.hpp"
+
+namespace host {
+
+/// One rendering of one scene. `World` is an aglow `Scene` of floats and RGB with bounds and a position error.
+template <typename World>
+class renderer {
+    using T = float;
+    using S = vec3<float>;
+    using maps_type = aglow::photon_maps<S, T>;
+    using cache_type = aglow::frozen_irradiance_cache<S, T>;
+
+public:
+    renderer(const World& scene, const light_set<T>& lights, const camera<T>& view, const render_options& options)
+        : scene_{scene}, lights_{lights}, view_{view}, options_{options}, run_{threads(options)} {}
+
+    [[nodiscard]] render_result render() {
+        for (const auto& o : aglow::plan_for(scene_).left_out) {
+            result_.notes.push_back("left out: " + o.part + ", " + o.why);
+        }
+        switch (options_.how) {
+            case method::path:
+                finish(aglow::path_tracer<World, light_set<T>>{scene_, lights_}, nullptr, nullptr);
+                break;
+            case method::irradiance_cache: irradiance_cache(); break;
+            case method::photon_map: photon_map(); break;
+            case method::final_gather: final_gather(); break;
+            case method::gather_cache: gather_cache(); break;
+        }
+        return std::move(result_);
+    }
+
+private:
+    using clock = std::chrono::steady_clock;
+
+    static aglow::own_threads threads(const render_options& o) {
+        return o.threads == 0 ? aglow::own_threads{} : aglow::own_threads{o.threads};
+    }
+    static double since(clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); }
+
+    [[nodiscard]] auto eye() const {
+        return [this](const vec2<T>& film) { return view_.through(film, options_.width, options_.height); };
+    }
+
+    // ---- settings ---------------------------------------------------------------------------------------------------
+
+    [[nodiscard]] aglow::photon_options photons(aglow::photon_options wanted) {
+        wanted.direct = options_.direct_photons.value_or(wanted.direct);
+        wanted.caustic = options_.caustic_photons.value_or(wanted.caustic);
+        wanted.indirect = options_.indirect_photons.value_or(wanted.indirect);
+        wanted.seed = options_.seed;
+        wanted.progress = [this](double) {
+            photons_traced_ = since(start_);
+            return true;
+        };
+        return wanted;
+    }
+    [[nodiscard]] aglow::density_options density() const {
+        aglow::density_options d;
+        d.count = options_.photons_per_estimate.value_or(d.count);
+        return d;
+    }
+    [[nodiscard]] aglow::caching_options caching() const {
+        aglow::caching_options c;
+        c.view.width = options_.width;
+        c.view.height = options_.height;
+        c.view.seed = options_.seed;
+        c.fill.seed = options_.seed;
+        c.fill.rays = options_.gather_rays.value_or(c.fill.rays);
+        c.cache.reach.accuracy = options_.accuracy.value_or(c.cache.reach.accuracy);
+        return c;
+    }
+
+    // ---- methods ----------------------------------------------------------------------------------------------------
+
+    void irradiance_cache() {
+        const aglow::irradiance_caching<World, light_set<T>> integrator = prepare("irradiance cache", [&] {
+            return aglow::irradiance_caching<World, light_set<T>>{scene_, lights_,   scene_.bounds(),
+                                                                  eye(),  caching(), run_};
+        });
+        finish(integrator, nullptr, &integrator.cache());
+    }
+    void photon_map() {
+        aglow::photon_mapping_options o;
+        o.photons = photons(o.photons);
+        o.density = density();
+        o.direct_from_map = o.photons.direct > 0;
+        const aglow::photon_mapping<World, light_set<T>> integrator = prepare("photons", [&] {
+            return aglow::photon_mapping<World, light_set<T>>{scene_, lights_, o, run_};
+        });
+        finish(integrator, &integrator.maps(), nullptr);
+    }
+    void final_gather() {
+        aglow::final_gathering_options o;
+        o.photons = photons(o.photons);
+        o.density = density();
+        o.irradiance.density.count = o.density.count;
+        o.irradiance.seed = options_.seed;
+        o.rays = options_.gather_rays.value_or(o.rays);
+        const aglow::final_gathering<World, light_set<T>> integrator = prepare("irradiance at photons", [&] {
+            return aglow::final_gathering<World, light_set<T>>{scene_, lights_, o, run_};
+        });
+        finish(integrator, &integrator.maps(), nullptr);
+    }
+    void gather_cache() {
+        aglow::gather_caching_options o;
+        o.photons = photons(o.photons);
+        o.density = density();
+        o.irradiance.density.count = o.density.count;
+        o.irradiance.seed = options_.seed;
+        o.caching = caching();
+        const aglow::gather_caching<World, light_set<T>> integrator = prepare("irradiance cache", [&] {
+            return aglow::gather_caching<World, light_set<T>>{scene_, lights_, scene_.bounds(), eye(), o, run_};
+        });
+        finish(integrator, &integrator.maps(), &integrator.cache());
+    }
+
+    /// Makes an integrator and notes how long its photons took, and how long `rest`.
+    template <typename Make>
+    auto prepare(const std::string& rest, Make&& make) {
+        start_ = clock::now();
+        progress told{"preparing"};
+        auto made = make();
+        const double all = since(start_);
+        if (photons_traced_ > 0 && rest != "photons") { result_.phases.push_back({"photons", photons_traced_}); }
+        result_.phases.push_back({rest, rest == "photons" ? all : all - photons_traced_});
+        return made;
+    }
+
+    // ---- pictures ---------------------------------------------------------------------------------------------------
+
+    template <typename Integrator>
+    void finish(const Integrator& integrator, const maps_type* maps, const cache_type* cache) {
+        count(maps, cache);
+        switch (options_.show) {
+            case view::photons: return show("", photons_seen(maps));
+            case view::records: return show("", records_seen(expose("picture", integrator), cache));
+            case view::direct: return show("", direct());
+            case view::caustic: return show("", caustic(maps));
+            case view::indirect: return show("", indirect(expose("picture", integrator), maps));
+            case view::beauty: break;
+        }
+        const picture all = expose("picture", integrator, true);
+        result_.layers.insert(result_.layers.begin(), {"", all});
+        if (!options_.layers) { return; }
+        show("direct", direct());
+        if (maps) { show("caustic", caustic(maps)); }
+        show("indirect", indirect(all, maps));
+    }
+    void show(const char* name, picture image) { result_.layers.push_back({name, std::move(image)}); }
+
+    /// Takes the samples that were asked for, or as many as fit into the time.
+    template <typename Integrator>
+    picture expose(const std::string& name, const Integrator& integrator, bool with_error = false) {
+        const auto begun = clock::now();
+        aglow::film<S> film{options_.width, options_.height};
+        {
+            progress bar{name};
+            do {
+                const std::uint32_t samples = next_samples(film.samples(), since(begun));
+                const std::uint32_t before = film.samples();
+                aglow::film_options o{.samples = samples, .seed = options_.seed};
+                o.progress = [&](double share) {
+                    const double more = static_cast<double>(before) + share * static_cast<double>(samples);
+                    bar.show(options_.seconds > 0 ? since(began_) / options_.seconds
+                                                  : more / static_cast<double>(wanted()));
+                    return true;
+                };
+                film.expose(eye(), integrator, o, run_);
+            } while (!done(film.samples(), since(begun)));
+        }
+        result_.phases.push_back({name, since(begun)});
+        if (taken_ == 0) { result_.add_fact("samples a pixel", film.samples()); }
+        taken_ = film.samples();
+        if (film.dropped() > 0) { result_.add_fact(name + ", samples dropped", film.dropped()); }
+        picture image{options_.width, options_.height};
+        picture error{options_.width, options_.height};
+        for (std::size_t y = 0; y < options_.height; ++y) {
+            for (std::size_t x = 0; x < options_.width; ++x) {
+                image.at(x, y) = film.radiance(x, y);
+                error.at(x, y) = S{film.error(x, y)};
+            }
+        }
+        if (with_error) { result_.layers.push_back({"error", std::move(error)}); }
+        return image;
+    }
+
+    /// Layers are given as many samples as the picture got, whatever it was limited by.
+    [[nodiscard]] std::uint32_t wanted() const { return taken_ > 0 ? taken_ : options_.samples; }
+    [[nodiscard]] bool timed() const { return options_.seconds > 0 && taken_ == 0; }
+
+    /// Doubles while time allows, then what fits.
+    [[nodiscard]] std::uint32_t next_samples(std::uint32_t taken, double spent) const {
+        if (!timed()) { return wanted(); }
+        if (taken == 0) { return 1; }
+        const double left = options_.seconds - since(began_);
+        const double fit = left * static_cast<double>(taken) / spent;
+        return std::max(1u, std::min(taken, static_cast<std::uint32_t>(std::max(0.0, fit))));
+    }
+    [[nodiscard]] bool done(std::uint32_t taken, double spent) const {
+        if (!timed()) { return true; }
+        return taken >= (1u << 24) || since(began_) + spent / static_cast<double>(taken) > options_.seconds;
+    }
+
+    [[nodiscard]] const picture& direct() {
+        if (direct_) { return *direct_; }
+        const aglow::direct_layer<World, light_set<T>> layer{scene_, lights_};
+        return direct_.emplace(expose("direct light", aglow::layered_integrator{scene_, lights_, layer}));
+    }
+
+    /// What is seen of lights alone, in mirrors too.
+    [[nodiscard]] picture glow() {
+        const auto dark = [](const auto&, const vec3<T>&, T, const auto&, std::uint32_t) {
+            return aglow::estimate<S>{};
+        };
+        return expose("lights", aglow::layered_integrator{scene_, lights_, dark});
+    }
+
+    [[nodiscard]] const picture& caustic(const maps_type* maps) {
+        if (caustic_) { return *caustic_; }
+        if (!maps) { throw usage_error("--view caustic needs a method with photon maps"); }
+        const aglow::map_layer<S, T> layer{maps->caustic, density()};
+        return caustic_.emplace(minus(expose("caustics", aglow::layered_integrator{scene_, lights_, layer}), glow()));
+    }
+
+    /// All light but the direct and what the caustic map shows. The same numbers were drawn, so the noise of direct
+    /// light leaves with it.
+    [[nodiscard]] picture indirect(const picture& all, const maps_type* maps) {
+        picture rest = minus(all, direct());
+        return maps ? minus(rest, caustic(maps)) : rest;
+    }
+
+    [[nodiscard]] static picture minus(picture a, const picture& b) {
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) { a.pixels[i] -= b.pixels[i]; }
+        return a;
+    }
+
+    /// Calls `paint(pixel, i)` for every place(i) that the camera sees.
+    template <typename Place, typename Paint>
+    void for_each_seen(picture& image, std::size_t count, Place&& place, Paint&& paint) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const vec3<T> p = place(i);
+            const auto film = view_.film_point(p, options_.width, options_.height);
+            if (!film || !seen(p)) { continue; }
+            paint(image.at(static_cast<std::size_t>(film->x), static_cast<std::size_t>(film->y)), i);
+        }
+    }
+    [[nodiscard]] bool seen(const vec3<T>& p) const {
+        const vec3<T> back = view_.origin - p;
+        return !scene_.occluded(view_.origin, p + back * T(1e-3));
+    }
+
+    [[nodiscard]] picture photons_seen(const maps_type* maps) {
+        if (!maps) { throw usage_error("--view photons needs a method with photon maps"); }
+        picture image{options_.width, options_.height};
+        const auto add = [&](const auto& map) {
+            for_each_seen(
+                image, map.size(), [&](std::size_t i) { return map.position(i); },
+                [&](S& pixel, std::size_t i) {
+                    const S power = map.photons()[i].power;
+                    if (!aglow::is_black(power)) { pixel += power * (0.2f / aglow::max_component(power)); }
+                });
+        };
+        add(maps->direct);
+        add(maps->caustic);
+        add(maps->indirect);
+        return image;
+    }
+
+    [[nodiscard]] picture records_seen(picture image, const cache_type* cache) {
+        if (!cache) { throw usage_error("--view records needs a method with an irradiance cache"); }
+        for (S& pixel : image.pixels) { pixel *= 0.4f; }
+        for_each_seen(
+            image, cache->size(), [&](std::size_t i) { return (*cache)[static_cast<std::uint32_t>(i)].position(); },
+            [](S& pixel, std::size_t) {
+                pixel = {1, 0.35f, 0.05f};
+            });
+        return image;
+    }
+
+    void count(const maps_type* maps, const cache_type* cache) {
+        if (cache) {
+            result_.add_fact("records", cache->size());
+            result_.add_bytes("records, memory", cache->bytes());
+        }
+        if (!maps) { return; }
+        const auto add = [&](const char* name, const auto& map) {
+            if (map.size() > 0) {
+                result_.add_fact(std::string{"photons, "} + name, map.size());
+            } else if (!map.why.empty()) {
+                result_.notes.push_back(std::string{name} + " map: " + map.why);
+            }
+        };
+        add("direct", maps->direct);
+        add("caustic", maps->caustic);
+        add("indirect", maps->indirect);
+        result_.add_bytes("photons, memory", maps->direct.memory() + maps->caustic.memory() + maps->indirect.memory());
+    }
+
+    const World& scene_;
+    const light_set<T>& lights_;
+    camera<T> view_;
+    render_options options_;
+    aglow::own_threads run_;
+    render_result result_{};
+    clock::time_point began_{clock::now()};
+    clock::time_point start_{clock::now()};
+    double photons_traced_{0};
+    std::uint32_t taken_{0};
+    std::optional<picture> direct_{};
+    std::optional<picture> caustic_{};
+};
+
+}  // namespace host
