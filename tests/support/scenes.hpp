@@ -14,6 +14,7 @@
 namespace support {
 
 using aglow::lobe_set;
+using aglow::max_component;
 using aglow::ray;
 using aglow::vec2;
 using aglow::vec3;

@@ -44,6 +44,12 @@ concept TellsPdf = requires(const Lights& lights, const vec3<hit_scalar<H>>& v, 
     lights.pdf(v, v, hit);
 };
 
+/// Whether `lights` can tell the density with which they look beyond the scene.
+template <typename Lights, typename T>
+concept TellsEscapedPdf = requires(const Lights& lights, const vec3<T>& v) {
+    lights.escaped_pdf(v, v);
+};
+
 /// Which lobes look for lights by a scattered ray as well, so that both ways share the work.
 struct light_sharing {
     lobe_set lit{lobe_set::smooth};        ///< lobes that are lit here
@@ -68,7 +74,8 @@ template <Scene World, Illuminator Lights, Sampler R>
     S reflected = hit.evaluate(wo, wi, sharing.lit & ~sharing.scattered);
     const lobe_set shared = sharing.lit & sharing.scattered;
     if (any(shared, lobe_set::smooth)) {
-        const bool met = TellsPdf<Lights, hit_of<World>> && light->pdf > 0;
+        const bool told = is_finite(T(light->distance)) ? TellsPdf<Lights, hit_of<World>> : TellsEscapedPdf<Lights, T>;
+        const bool met = told && light->pdf > 0;
         const T share = met ? balance(T(light->pdf), T(hit.pdf(wo, wi, shared))) : T(1);
         reflected = reflected + hit.evaluate(wo, wi, shared) * band_of<S>(share);
     }

@@ -69,7 +69,7 @@ template <Scene World, typename Lights>
 [[nodiscard]] scalar_of<World> escape_share(const walk_state<World>& at, const Lights& lights, emission_rule rule,
                                             std::uint32_t bounce) {
     using T = scalar_of<World>;
-    if constexpr (requires { lights.escaped_pdf(at.came_from, at.path.direction); }) {
+    if constexpr (TellsEscapedPdf<Lights, T>) {
         if (at.mirrored && rule != emission_rule::all) {
             return bounce == 1 || rule == emission_rule::no_caustics ? T(0) : T(1);
         }

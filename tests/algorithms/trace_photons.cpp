@@ -1,0 +1,338 @@
+#include <aglow/algorithms/trace_photons.hpp>
+
+#include <atomic>
+#include <limits>
+
+#include <glm/vec3.hpp>
+
+#include "support/archetypes.hpp"
+#include "support/broken_host.hpp"
+#include "support/catch.hpp"
+#include "support/scenes.hpp"
+#include "support/statistics.hpp"
+
+using namespace aglow;
+using statistics::sample_mean;
+using support::bulb;
+using support::toy_scene;
+
+namespace {
+
+using S = glm::vec3;
+
+bool same(const photon_map<S, float>& a, const photon_map<S, float>& b) {
+    if (a.size() != b.size()) { return false; }
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const bool equal = a.position(i) == b.position(i) && a.photons()[i].power == b.photons()[i].power &&
+                           a.photons()[i].wi == b.photons()[i].wi && a.photons()[i].normal == b.photons()[i].normal;
+        if (!equal) { return false; }
+    }
+    return true;
+}
+
+template <typename L>
+bool books_close(const L& l) {
+    return l.emitted == l.escaped + l.absorbed + l.roulette + l.unneeded + l.capped + l.dropped;
+}
+
+template <typename Map>
+S total(const Map& map) {
+    glm::dvec3 sum{};
+    for (const auto& p : map.photons()) { sum += glm::dvec3(p.power); }
+    return sum;
+}
+
+support::ball_room<S, float> room() { return support::room_with_balls<S, float>({0.7f, 0.5f, 0.3f}, {10, 12, 14}); }
+
+toy_scene<S, float> sphere(float albedo, float port = 2) {
+    return {.balls = {{.radius = 2, .made_of = {.diffuse = S{albedo}}, .port = port}},
+            .lobes = lobe_set::diffuse_reflection};
+}
+
+const bulb<S, float> lamp{.intensity = {1, 2, 3}};
+
+}  // namespace
+
+TEST_CASE("trace_photons: 1, 2, 3 and 8 threads and any executor land the same photons") {
+    const auto r = room();
+    const photon_options options{.direct = 3000, .caustic = 1000, .indirect = 5000, .seed = 3};
+    const auto one = trace_photons(r.scene, r.light, options);
+    REQUIRE(one.caustic.size() > 500);
+    const auto check = [&](const auto& run) {
+        const auto other = trace_photons(r.scene, r.light, options, run);
+        CHECK(same(one.direct, other.direct));
+        CHECK(same(one.caustic, other.caustic));
+        CHECK(same(one.indirect, other.indirect));
+        CHECK(one.ledger.power_absorbed == other.ledger.power_absorbed);
+        CHECK(one.ledger.bounces == other.ledger.bounces);
+        CHECK(one.ledger.absorbed == other.ledger.absorbed);
+    };
+    for (const unsigned threads : {1u, 2u, 3u, 8u}) { check(own_threads{threads}); }
+    check(archetypes::executor{});
+}
+
+TEST_CASE("trace_photons: the books close to the last particle for any number of threads") {
+    const auto r = room();
+    auto open = r.scene;
+    open.rectangles.erase(open.rectangles.begin());
+    for (const unsigned threads : {1u, 2u, 3u, 8u}) {
+        const auto maps =
+            trace_photons(open, r.light, {.direct = 2000, .caustic = 500, .indirect = 4000}, own_threads{threads});
+        CHECK(books_close(maps.ledger));
+        const std::size_t most = std::max({maps.direct.paths, maps.caustic.paths, maps.indirect.paths});
+        CHECK(maps.ledger.emitted == most);
+        CHECK(maps.ledger.escaped > 0);
+        CHECK(maps.ledger.dropped == 0);
+    }
+}
+
+TEST_CASE("trace_photons: in a closed sphere every path lands once, and all its power is in the direct map") {
+    const auto maps = trace_photons(sphere(0.5f), lamp, {.direct = 20000});
+    CHECK(maps.direct.size() == maps.direct.paths);
+    CHECK(maps.direct.status == map_status::full);
+    const S power = lamp.intensity * (4 * pi<float>);
+    CHECK(total(maps.direct).x == Approx(power.x).epsilon(1e-5));
+    CHECK(total(maps.direct).z == Approx(power.z).epsilon(1e-5));
+    CHECK(maps.indirect.status == map_status::left_out);
+    // Nobody asked for more than the first landing.
+    CHECK(maps.ledger.unneeded == maps.ledger.emitted);
+    CHECK(maps.ledger.bounces == maps.ledger.emitted);
+}
+
+TEST_CASE("trace_photons: indirect light of a bulb in a matte sphere is P rho / (4 pi R2 (1 - rho)) everywhere") {
+    const bulb<S, float> aside{.position = {0.9f, -0.4f, 0.7f}, .intensity = S{1}};
+    for (const float albedo : {0.5f, 0.9f}) {
+        const auto maps = trace_photons(sphere(albedo), aside, {.indirect = 200000});
+        const double truth = double(albedo) / ((1 - double(albedo)) * 4);
+        sample_mean mean;
+        random_sampler<float> random{1};
+        for (int i = 0; i < 300; ++i) {
+            const vec3<float> n = uniform_sphere(random.next_2d());
+            const auto e = maps.indirect.irradiance(n * 2.0f, -n, {.count = 400});
+            mean.add(double(e.value.x));
+            // Curved by the estimate's own disc, which the guess of its error must cover; two sigma and bias.
+            CHECK(std::abs(double(e.value.x) - truth) <= 2 * double(e.error));
+        }
+        CAPTURE(albedo, mean.mean() / truth);
+        CHECK(mean.mean() == Approx(truth).epsilon(0.01));
+    }
+}
+
+TEST_CASE("trace_photons: an integrating sphere with a port keeps what the closed form says") {
+    // A port of the share f: every wall point sees it under the share f.
+    const float f = 0.1f;
+    const float rho = 0.9f;
+    const bulb<S, float> centre{.intensity = S{1}};
+    const auto maps = trace_photons(sphere(rho, 1 - 2 * f), centre, {.indirect = 100000});
+    const auto& l = maps.ledger;
+    const double bounced = double(rho) * (1 - double(f));
+    const double escaped = double(f) + (1 - double(f)) * double(rho) * double(f) / (1 - bounced);
+    const double n = static_cast<double>(l.emitted);
+    CHECK(std::abs(static_cast<double>(l.escaped) / n - escaped) <= 4 * std::sqrt(escaped * (1 - escaped) / n));
+    const double truth = 4 * pi<double> * (1 - double(f)) * double(rho) / (1 - bounced) / (16 * pi<double>);
+    sample_mean mean;
+    random_sampler<float> random{1};
+    for (int i = 0; i < 400; ++i) {
+        const vec3<float> p = uniform_sphere(random.next_2d());
+        if (p.z < 0.5f) { mean.add(double(maps.indirect.irradiance(p * 2.0f, -p, {.count = 400}).value.x)); }
+    }
+    CHECK(mean.mean() == Approx(truth).epsilon(0.015));
+}
+
+TEST_CASE("trace_photons: what the scene cannot have is left out, and no path is walked for it") {
+    const auto maps = trace_photons(sphere(0.5f), lamp, {.caustic = 1000});
+    CHECK(maps.caustic.status == map_status::left_out);
+    CHECK(maps.caustic.why == "left out, no specular surface");
+    CHECK(maps.ledger.emitted == 0);
+    toy_scene<S, float> mirrors{.balls = {{.radius = 2, .made_of = {.mirror = S{1}}}}, .lobes = lobe_set::specular};
+    const auto none = trace_photons(mirrors, lamp, {.direct = 10, .caustic = 10, .indirect = 10});
+    CHECK(none.ledger.emitted == 0);
+    CHECK(none.indirect.why == "left out, no diffuse or glossy surface");
+    CHECK(none.size() == 0);
+    const auto unasked = trace_photons(sphere(0.5f), lamp, {});
+    CHECK(unasked.direct.status == map_status::left_out);
+    CHECK(unasked.ledger.emitted == 0);
+}
+
+TEST_CASE("trace_photons: a scene that can store nothing ends soon and says so") {
+    const photon_options options{.direct = 1000, .caustic = 1000, .indirect = 1000, .pilot_paths = 256};
+    const auto nothing_in = [&](const auto& scene, const auto& light, std::size_t most_paths) {
+        const auto maps = trace_photons(scene, light, options);
+        CHECK(maps.size() == 0);
+        for (const auto* map : {&maps.direct, &maps.caustic, &maps.indirect}) {
+            CHECK(map->status == map_status::empty);
+            CHECK(map->why.find("empty, nothing landed") == 0);
+        }
+        CHECK(maps.ledger.emitted <= most_paths);
+        CHECK(books_close(maps.ledger));
+    };
+    // Light that leaves the scene; mirrors that lose nothing; mirrors that do; no power at all.
+    nothing_in(toy_scene<S, float>{}, lamp, 32 * 256);
+    nothing_in(toy_scene<S, float>{.balls = {{.radius = 2, .made_of = {.mirror = S{1}}}}}, lamp, 256);
+    nothing_in(toy_scene<S, float>{.balls = {{.radius = 2, .made_of = {.mirror = S{0.9f}}}}}, lamp, 32 * 256);
+    auto black = sphere(0.5f);
+    black.lobes = lobe_set::all;
+    nothing_in(black, support::no_light<S, float>{}, 32 * 256);
+}
+
+TEST_CASE("trace_photons: black walls absorb all, and nothing is divided by nothing") {
+    auto scene = sphere(0);
+    scene.lobes = lobe_set::all;
+    const auto maps = trace_photons(scene, lamp, {.direct = 100, .indirect = 100, .pilot_paths = 64});
+    CHECK(maps.size() == 0);
+    CHECK(maps.ledger.absorbed == maps.ledger.emitted);
+    CHECK(total(maps.direct) == S{0});
+}
+
+TEST_CASE("trace_photons: light too rare for its number of photons is kept, scaled by its own paths") {
+    auto r = room();
+    r.scene.balls.erase(r.scene.balls.begin());
+    const auto maps = trace_photons(r.scene, r.light, {.caustic = 100000, .indirect = 1000, .most_paths = 20000});
+    CHECK(maps.caustic.status == map_status::partly);
+    CHECK(maps.caustic.paths == 20000);
+    CHECK(maps.caustic.size() > 100);
+    CHECK(maps.indirect.status == map_status::full);
+    CHECK(maps.indirect.paths < 20000);
+    // The power of the light that passes the ball does not depend on how many photons were asked for.
+    const auto more = trace_photons(r.scene, r.light, {.caustic = 50000, .seed = 1});
+    CHECK(more.caustic.status == map_status::full);
+    CHECK(total(maps.caustic).x == Approx(total(more.caustic).x).epsilon(0.1));
+}
+
+TEST_CASE("trace_photons: the power of a few photons is right in the mean, however few were asked for") {
+    // Storing until k are full would be k / (k - 1) too bright: a third at 4.
+    toy_scene<S, float> floor;
+    floor.rectangles = {
+        {.corner = {-1, -1, 0}, .u = {2, 0, 0}, .v = {0, 2, 0}, .normal = {0, 0, 1}, .made_of = {.diffuse = S{0.5f}}}};
+    const bulb<S, float> above{.position = {0, 0, 1}, .intensity = S{1 / (4 * pi<float>)}};
+    // A side of a cube around the bulb: one sixth of its light.
+    sample_mean mean;
+    for (std::uint64_t seed = 0; seed < 800; ++seed) {
+        const auto maps = trace_photons(floor, above, {.direct = 4, .pilot_paths = 64, .seed = seed});
+        mean.add(double(total(maps.direct).x));
+    }
+    CAPTURE(mean.mean() * 6, mean.standard_error() * 6);
+    CHECK(mean.agrees(1.0 / 6));
+}
+
+TEST_CASE("trace_photons: only maps without a given number of paths ask the pilot") {
+    const auto r = room();
+    const auto maps = trace_photons(r.scene, r.light, {.direct = 2000, .indirect = 3000, .paths = {.indirect = 777}});
+    CHECK(maps.indirect.paths == 777);
+    CHECK(maps.direct.paths > 1000);
+    CHECK(maps.direct.size() > 1000);
+    const auto capped = trace_photons(r.scene, r.light, {.indirect = 10, .most_paths = 99, .paths = {.indirect = 777}});
+    CHECK(capped.indirect.paths == 99);
+}
+
+TEST_CASE("trace_photons: stopped early, the power is that of the paths that were walked") {
+    std::atomic<int> calls{0};
+    const auto maps = trace_photons(sphere(0.5f), lamp, {.direct = 100000, .progress = [&](double share) {
+                                                             CHECK((share > 0 && share <= 1));
+                                                             return ++calls < 3;
+                                                         }});
+    CHECK(calls == 3);
+    CHECK(maps.direct.size() == 3 * 1024);
+    CHECK(maps.direct.paths == 3 * 1024);
+    CHECK(maps.direct.status == map_status::partly);
+    CHECK(total(maps.direct).y == Approx(8 * pi<float>).epsilon(1e-4));
+}
+
+TEST_CASE("trace_photons: a scene without loss is cut at a depth, and the loss is told") {
+    auto scene = sphere(1);
+    const auto maps = trace_photons(scene, lamp, {.indirect = 100000, .pilot_paths = 16});
+    CHECK(maps.ledger.capped == maps.ledger.emitted);
+    // 4096 roundings of a weight of one.
+    CHECK(maps.ledger.power_capped.x == Approx(maps.ledger.power_emitted.x).epsilon(1e-3));
+}
+
+TEST_CASE("trace_photons: geometry by a power of two scales the maps exactly") {
+    const auto r = room();
+    const photon_options options{.direct = 300, .caustic = 50, .indirect = 300, .pilot_paths = 512};
+    const auto here = trace_photons(r.scene, r.light, options);
+    for (int k = -30; k <= 30; k += 4) {
+        const float s = std::ldexp(1.0f, k);
+        auto light = r.light;
+        light.shape.corner *= s;
+        light.shape.u *= s;
+        light.shape.v *= s;
+        const auto there = trace_photons(r.scene.scaled(s), light, options);
+        REQUIRE(there.indirect.size() == here.indirect.size());
+        REQUIRE(there.caustic.size() == here.caustic.size());
+        bool exact = true;
+        for (std::size_t i = 0; i < here.indirect.size(); ++i) {
+            exact = exact && there.indirect.position(i) == here.indirect.position(i) * s &&
+                    there.indirect.photons()[i].power == here.indirect.photons()[i].power * (s * s);
+        }
+        CHECK(exact);
+        const vec3<float> p{0.2f, 0.1f, -1};
+        CHECK(there.indirect.irradiance(p * s, {0, 0, 1}).value == here.indirect.irradiance(p, {0, 0, 1}).value);
+    }
+}
+
+TEST_CASE("trace_photons: a brighter light by a power of two brightens the maps exactly") {
+    const auto r = room();
+    const photon_options options{.indirect = 500, .pilot_paths = 512};
+    const auto here = trace_photons(r.scene, r.light, options);
+    const auto e = here.indirect.irradiance({0.2f, 0.1f, -1}, {0, 0, 1});
+    for (int k = -60; k <= 60; k += 6) {
+        auto light = r.light;
+        light.shape.made_of.glow *= std::ldexp(1.0f, k);
+        const auto there = trace_photons(r.scene, light, options);
+        const auto brighter = there.indirect.irradiance({0.2f, 0.1f, -1}, {0, 0, 1});
+        CAPTURE(k);
+        CHECK(brighter.value == e.value * std::ldexp(1.0f, k));
+        CHECK(brighter.error == e.error * std::ldexp(1.0f, k));
+    }
+}
+
+TEST_CASE("trace_photons: permuted bands give permuted maps") {
+    const auto r = room();
+    auto turned = r;
+    const auto turn = [](S& s) { s = {s.y, s.z, s.x}; };
+    for (auto& q : turned.scene.rectangles) { turn(q.made_of.diffuse); }
+    turn(turned.light.shape.made_of.glow);
+    const auto a = trace_photons(r.scene, r.light, {.indirect = 2000});
+    const auto b = trace_photons(turned.scene, turned.light, {.indirect = 2000});
+    REQUIRE(a.indirect.size() == b.indirect.size());
+    bool exact = true;
+    for (std::size_t i = 0; i < a.indirect.size(); ++i) {
+        S p = a.indirect.photons()[i].power;
+        turn(p);
+        exact = exact && p == b.indirect.photons()[i].power && a.indirect.position(i) == b.indirect.position(i);
+    }
+    CHECK(exact);
+}
+
+TEST_CASE("trace_photons: bands of the host's own and gray in double tell the same light") {
+    using five = support::bands<5>;
+    toy_scene<five, float> scene{.balls = {{.radius = 2, .made_of = {.diffuse = {{0.5f, 0.5f, 0.5f, 0, 1}}}}},
+                                 .lobes = lobe_set::diffuse_reflection};
+    scene.balls[0].made_of.diffuse.of[4] = 0.25f;
+    const bulb<five, float> light{.intensity = {{1, 2, 1, 1, 1}}};
+    const auto maps = trace_photons(scene, light, {.direct = 4000, .indirect = 4000});
+    toy_scene<double, double> gray{.balls = {{.radius = 2, .made_of = {.diffuse = 0.5}}}};
+    const auto same_maps = trace_photons(gray, bulb<double, double>{.intensity = 1.0}, {.indirect = 4000});
+    double bands = 0;
+    double double_gray = 0;
+    for (const auto& p : maps.indirect.photons()) { bands += double(p.power.of[0]); }
+    for (const auto& p : same_maps.indirect.photons()) { double_gray += p.power; }
+    CHECK(bands == Approx(4 * pi<double>).epsilon(0.05));
+    CHECK(double_gray == Approx(4 * pi<double>).epsilon(0.05));
+    for (const auto& p : maps.indirect.photons()) { REQUIRE(p.power.of[3] == 0); }
+}
+
+TEST_CASE("trace_photons: a flawed light spoils only its own particles") {
+    const float broken = std::numeric_limits<float>::quiet_NaN();
+    const auto scene = sphere(0.5f);
+    const support::flawed_bulb flawed{{.intensity = S{1}}, broken, false};
+    const auto maps = trace_photons(scene, flawed, {.direct = 2000, .indirect = 2000});
+    CHECK(maps.ledger.dropped > 0);
+    for (const auto& p : maps.indirect.photons()) { REQUIRE(is_radiance(p.power)); }
+    // Half of the sphere is lit, as by the sound half of the particles.
+    CHECK(total(maps.direct).x == Approx(2 * pi<float>).epsilon(0.02));
+}
+
+TEST_CASE("trace_photons: an empty pilot is refused") {
+    CHECK_THROWS_AS(trace_photons(sphere(0.5f), lamp, {.indirect = 1, .pilot_paths = 0}), std::invalid_argument);
+}
