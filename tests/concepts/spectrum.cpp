@@ -133,8 +133,9 @@ TEMPLATE_TEST_CASE("spectrum: one bad band is enough, in each band and of each k
     }
 }
 
-TEMPLATE_TEST_CASE("spectrum: black adds nothing, white multiplies without change, + and * commute", "", float, double,
-                   aglow::vec3<float>, aglow::vec3<double>, eight<float>, eight<double>, archetypes::spectrum<float>) {
+TEMPLATE_TEST_CASE("spectrum: black adds nothing, white multiplies without change, sums and products commute", "",
+                   float, double, aglow::vec3<float>, aglow::vec3<double>, eight<float>, eight<double>,
+                   archetypes::spectrum<float>) {
     using S = TestType;
     using T = aglow::band_of<S>;
     const S a = maker<S>::one_other(T(0.3), 0, T(0.7));
