@@ -31,9 +31,11 @@
 #include <aglow/concepts/surface.hpp>
 
 // containers: where things are
+#include <aglow/containers/cell_directory.hpp>
 #include <aglow/containers/frozen_discs.hpp>
 #include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_build.hpp>
+#include <aglow/containers/kd_crowd.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_median.hpp>
 #include <aglow/containers/kd_nearest_one.hpp>
@@ -41,7 +43,8 @@
 #include <aglow/containers/kd_select.hpp>
 #include <aglow/containers/kd_tree.hpp>
 #include <aglow/containers/octree.hpp>
-#include <aglow/containers/sphere_block.hpp>
+#include <aglow/containers/packed_spheres.hpp>
+#include <aglow/containers/sphere_search.hpp>
 #include <aglow/containers/stable_array.hpp>
 
 // estimators: light from what was stored
@@ -90,6 +93,7 @@
 #include <aglow/report/audit.hpp>
 #include <aglow/report/audit_result.hpp>
 #include <aglow/report/audit_sample.hpp>
+#include <aglow/report/bias_variance.hpp>
 #include <aglow/report/bootstrap.hpp>
 #include <aglow/report/confidence.hpp>
 #include <aglow/report/conformal.hpp>

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include <aglow/containers/kd_crowd.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/core/bounds.hpp>
-#include <aglow/core/numbers.hpp>
 #include <aglow/core/simd.hpp>
 
 namespace aglow::detail {
@@ -47,15 +45,10 @@ template <typename T>
     return box;
 }
 
-/// How crowded a box of `count` points is, taken for even along the sides that it has.
+/// Whether the points of a child are all at one place.
 template <typename T>
-[[nodiscard]] kd_density<T> density_of(const bounds<T>& box, std::uint32_t count) {
-    const vec3<T> e = box.extent();
-    std::array<T, 3> side{e.x, e.y, e.z};
-    std::sort(side.begin(), side.end());
-    const T n = static_cast<T>(count);
-    const T radius = std::cbrt(side[0]) * std::cbrt(side[1]) * std::cbrt(side[2]) * std::cbrt(T(0.75) / (pi<T> * n));
-    return {square(side[2] / (2 * n)), side[2] / n * side[1] / pi<T>, square(radius)};
+[[nodiscard]] bool is_place(const kd_node<T>& node, std::uint32_t i) {
+    return node.low_x[i] == node.high_x[i] && node.low_y[i] == node.high_y[i] && node.low_z[i] == node.high_z[i];
 }
 
 /// Sets the boxes of node i of `level`, whose children are finished, and how crowded it is if those are leaves.
@@ -82,7 +75,10 @@ void finish_node(kd_storage<T>& tree, int level, std::uint32_t i) {
     }
     if (level > 1) { return; }
     const auto capacity = static_cast<std::uint32_t>(kd_capacity(1));
-    tree.densities[i] = density_of(node_box(node, children), std::min(capacity, tree.size - i * capacity));
+    tree.crowds[i] = crowd_of(tree, i, node_box(node, children), std::min(capacity, tree.size - i * capacity));
+    for (std::uint32_t lane = 0; lane < children; ++lane) {
+        tree.crowds[i].places |= std::uint32_t{is_place(node, lane)} << lane;
+    }
 }
 
 }  // namespace aglow::detail

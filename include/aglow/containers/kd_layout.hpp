@@ -31,11 +31,14 @@ struct alignas(64) kd_node {
     T low_x[kd_fan], low_y[kd_fan], low_z[kd_fan], high_x[kd_fan], high_y[kd_fan], high_z[kd_fan];
 };
 
-/// How crowded a node of leaves is: the squared radius that holds m points is about the largest of
-/// line * m^2, area * m and volume * m^(2/3). Only a guess comes from it, never an answer.
+/// What is known of a node of leaves beside its boxes.
 template <typename T>
-struct kd_density {
+struct kd_crowd {
+    /// The squared radius that holds m points is about the largest of line * m^2, area * m and volume * m^(2/3). Only a
+    /// guess comes from it, never an answer.
     T line, area, volume;
+    /// The leaves, as lanes, whose points are all at one place.
+    std::uint32_t places;
 };
 
 /// Points below one node of `level`.
@@ -53,7 +56,7 @@ struct kd_storage {
     std::array<std::uint32_t, kd_max_height + 1> first_node{};
     std::vector<kd_leaf<T>> leaves;
     std::vector<kd_node<T>> nodes;
-    std::vector<kd_density<T>> densities;
+    std::vector<kd_crowd<T>> crowds;
     std::vector<std::uint32_t> order;
 
     [[nodiscard]] const kd_node<T>& node(int level, std::uint32_t i) const {
@@ -84,7 +87,7 @@ struct kd_storage {
         leaves.resize(kd_blocks(count, kd_leaf_size));
         order.resize(count);
         nodes.resize(nodes_so_far);
-        densities.resize(kd_blocks(count, kd_capacity(1)));
+        crowds.resize(kd_blocks(count, kd_capacity(1)));
     }
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/core/simd.hpp>
@@ -52,9 +53,7 @@ bool is_settled(const kd_storage<T>& tree, int level, std::uint32_t child, T dis
     }
     const kd_node<T>& node = tree.node(level, child / kd_fan);
     const std::uint32_t i = child % kd_fan;
-    if (node.low_x[i] != node.high_x[i] || node.low_y[i] != node.high_y[i] || node.low_z[i] != node.high_z[i]) {
-        return false;
-    }
+    if (!is_place(node, i)) { return false; }
     offer<P>(tree, best, static_cast<std::uint32_t>(child * kd_capacity(level - 1)), distance2, accept);
     return true;
 }

@@ -23,6 +23,11 @@ inline constexpr std::uint32_t kd_stride = 8;
 template <typename T>
 struct kd_probe {
     vec3<T> point;
+    /// How many points of one place the search can use.
+    std::uint32_t enough;
+    /// The place whose leaves were listed last, and how many points of it.
+    std::uint32_t listed;
+    vec3<T> place;
     bool at_home;
     int level;
     std::array<std::uint32_t, kd_max_height + 1> home, count, next;
@@ -72,7 +77,7 @@ void go_home(const kd_storage<T>& tree, kd_probe<T>& probe) {
 template <typename P, typename T>
 [[nodiscard]] T guess_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe, std::uint32_t k) {
     const T wanted = static_cast<T>(k) + 3 * std::sqrt(static_cast<T>(k)) + 1;
-    const kd_density<T>& crowd = tree.densities[probe.home[1]];
+    const kd_crowd<T>& crowd = tree.crowds[probe.home[1]];
     const T plane = crowd.area * wanted;
     const T cube = crowd.volume * std::cbrt(wanted * wanted);
     const T spread2 = std::max(std::max(crowd.line * wanted * wanted, plane), cube);
@@ -89,9 +94,28 @@ template <typename T>
 void start(const kd_storage<T>& tree, kd_probe<T>& probe) {
     const auto top = static_cast<std::size_t>(tree.height);
     probe.level = tree.height;
+    probe.listed = 0;
     probe.open[top][0] = 0;
     probe.count[top] = 1;
     probe.next[top] = 0;
+}
+
+/// Takes leaves of one place out of `mask` once enough of its points are listed: they come in the order of their rank,
+/// so that those behind can not be among the nearest.
+template <typename T>
+std::uint32_t thin_out(const kd_node<T>& node, kd_probe<T>& probe, std::uint32_t places, std::uint32_t mask) {
+    for (std::uint32_t rest = places & mask; rest != 0; rest &= rest - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+        const vec3<T> place{node.low_x[i], node.low_y[i], node.low_z[i]};
+        if (probe.listed == 0 || place != probe.place) { probe.listed = 0; }
+        probe.place = place;
+        if (probe.listed >= probe.enough) {
+            mask &= ~(1u << i);
+        } else {
+            probe.listed += kd_leaf_size;
+        }
+    }
+    return mask;
 }
 
 /// Opens up to kd_stride nodes of the probe's level: their children closer than `bound` become the next level's list.
@@ -107,7 +131,10 @@ void open_nodes(const kd_storage<T>& tree, kd_probe<T>& probe, T bound) {
         const bool known = probe.at_home && node == probe.home[level];
         const P d = known ? P::load(probe.path[level])
                           : box_distances2<P>(tree.node(static_cast<int>(level), node), probe.point);
-        const std::uint32_t mask = P::less(d, limit);
+        std::uint32_t mask = P::less(d, limit);
+        if (level == 1 && (tree.crowds[node].places & mask) != 0) {
+            mask = thin_out(tree.node(1, node), probe, tree.crowds[node].places, mask);
+        }
         P::compress_numbers(children + count, node * kd_fan, mask);
         count += static_cast<std::uint32_t>(std::popcount(mask));
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <aglow/containers/kd_layout.hpp>
@@ -62,6 +63,23 @@ kd_bracket cut_bracket(const T* numbers, std::uint32_t count, T low, T high, T* 
     return cut;
 }
 
+/// The smallest and the largest of numbers padded with what sorts last.
+template <typename P, typename T>
+[[nodiscard]] std::pair<T, T> range_of(const T* numbers, std::uint32_t count) {
+    P low = P::load(numbers);
+    P high = P::all(numbers[0]);
+    for (std::uint32_t i = 0; i + simd::lanes <= count; i += simd::lanes) {
+        const P v = P::load(numbers + i);
+        low = P::min(low, v);
+        high = P::max(high, v);
+    }
+    std::pair<T, T> range{P::smallest(low), P::largest(high)};
+    for (std::uint32_t i = count / simd::lanes * simd::lanes; i < count; ++i) {
+        range = {std::min(range.first, numbers[i]), std::max(range.second, numbers[i])};
+    }
+    return range;
+}
+
 /// The k-th smallest, k from 1, of numbers in [0, bound), which must be roughly even to be fast.
 /// `numbers` and the two spares have room for sixteen more.
 template <typename P, typename T>
@@ -69,7 +87,13 @@ template <typename P, typename T>
     T low = 0;
     T high = bound;
     pad<P>(numbers, count);
-    for (int round = 0; count > kd_few && round < 4; ++round) {
+    for (int round = 0; count > kd_few && round < 5; ++round) {
+        if (round > 0) {
+            const auto [least, most] = range_of<P>(numbers, count);
+            if (least == most) { return least; }
+            low = least;
+            high = simd::next_above(most);
+        }
         const T n = static_cast<T>(count);
         const T rank = static_cast<T>(k) - T(0.5);
         const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 2;
@@ -141,7 +165,10 @@ void break_ties(const kd_storage<T>& tree, kd_candidates<T>& found, T farthest, 
     }
     const std::uint32_t excess = found.count - k;
     const auto last = found.ranks.end() - static_cast<std::ptrdiff_t>(excess) - 1;
-    std::nth_element(found.ranks.begin(), last, found.ranks.end());
+    // Those of one place come sorted.
+    if (!std::is_sorted(found.ranks.begin(), found.ranks.end())) {
+        std::nth_element(found.ranks.begin(), last, found.ranks.end());
+    }
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < found.count; ++i) {
         if (found.distances2[i] == farthest && tree.rank(found.slots[i]) > *last) { continue; }

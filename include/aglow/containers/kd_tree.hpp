@@ -160,6 +160,12 @@ private:
         const T limit = std::min(reach.radius2, std::numeric_limits<T>::max());
         return {limit > 0 ? static_cast<std::uint32_t>(std::min<std::size_t>(k, size())) : 0, limit};
     }
+    /// Of a thousand points at one place a search for k can use k, unless it may refuse them.
+    template <typename Accept>
+    static std::uint32_t enough(task what) {
+        constexpr bool all = std::is_same_v<std::remove_cvref_t<Accept>, kd_accept_all>;
+        return all ? what.count : std::numeric_limits<std::uint32_t>::max();
+    }
     [[nodiscard]] T guess(const detail::kd_probe<T>& probe, task what, kd_reach<T> reach) const;
     /// Brings searches side by side to where their leaves are listed and asked for.
     void approach(std::span<detail::kd_probe<T>> probes, task what, kd_reach<T> reach, std::span<T> radius2) const;
@@ -212,7 +218,7 @@ bounds<T> kd_tree<T>::box() const {
 template <typename T>
 std::size_t kd_tree<T>::memory() const {
     const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return bytes(tree_.leaves) + bytes(tree_.nodes) + bytes(tree_.densities) + bytes(tree_.order);
+    return bytes(tree_.leaves) + bytes(tree_.nodes) + bytes(tree_.crowds) + bytes(tree_.order);
 }
 
 template <typename T>
@@ -241,6 +247,7 @@ kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scr
     scratch.found_.reserve(2 * std::size_t{what.count} + 1024);
     detail::kd_probe<T>& probe = scratch.probes_.front();
     probe.point = point;
+    probe.enough = enough<Accept>(what);
     probe.at_home = !(reach.hint2 > 0);
     if (probe.at_home) { detail::go_home<pack>(tree_, probe); }
     detail::start(tree_, probe);
@@ -263,7 +270,10 @@ void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scra
     for (std::size_t first = 0; first < points.size(); first += group) {
         const std::size_t count = std::min(group, points.size() - first);
         const std::span<detail::kd_probe<T>> probes{scratch.probes_.data(), count};
-        for (std::size_t i = 0; i < count; ++i) { probes[i].point = points[first + i]; }
+        for (std::size_t i = 0; i < count; ++i) {
+            probes[i].point = points[first + i];
+            probes[i].enough = enough<Accept>(what);
+        }
         approach(probes, what, reach, radius2);
         for (std::size_t i = 0; i < count; ++i) {
             if constexpr (std::is_same_v<std::remove_cvref_t<Accept>, kd_accept_all>) {
@@ -325,6 +335,7 @@ void kd_tree<T>::within(const vec3<T>& point, T radius2, Visit&& visit) const {
     detail::kd_probe<T> probe;
     probe.point = point;
     probe.at_home = false;
+    probe.enough = std::numeric_limits<std::uint32_t>::max();
     detail::start(tree_, probe);
     T distances2[room + simd::lanes];
     kd_slot slots[room + simd::lanes];
