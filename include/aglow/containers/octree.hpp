@@ -5,6 +5,7 @@
 // store; a search descends only where the largest radius below a node can reach. Loose octrees: Ulrich 2000.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -14,8 +15,10 @@
 #include <limits>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
-#include <aglow/containers/sphere_block.hpp>
+#include <aglow/containers/packed_spheres.hpp>
+#include <aglow/containers/sphere_search.hpp>
 #include <aglow/containers/stable_array.hpp>
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/vec.hpp>
@@ -74,7 +77,7 @@ public:
             return ++refused_.centre, octree_insertion{octree_status::bad_centre, 0};
         }
         const std::uint32_t index = items_.append(std::move(item));
-        append(home(centre, radius), centre, radius, index);
+        append(home(centre, radius), {centre, limit2_of(radius), index});
         published_.store(index + 1, std::memory_order_release);
         return {octree_status::inserted, index};
     }
@@ -86,7 +89,7 @@ public:
     void visit_covering(const vec3<T>& point, Visitor&& visitor) const {
         sphere_hits<T> found;
         search(covering_question<T>{point}, found);
-        show(found, items_, visitor);
+        found.show(items_, visitor);
     }
 
     /// As above for spheres that have shrunk: `radius_of(const Item&)` tells an item's present radius, at most the one
@@ -94,11 +97,10 @@ public:
     template <typename RadiusOf, typename Visitor>
         requires std::invocable<RadiusOf&, const Item&> && std::invocable<Visitor&, const Item&>
     void visit_covering(const vec3<T>& point, RadiusOf&& radius_of, Visitor&& visitor) const {
-        sphere_hits<T> found;
+        sphere_hits<T, true> found;
         search(covering_question<T>{point}, found);
-        found.keep_if(
-            [&](const sphere_hit<T>& hit) { return hit.distance2 <= square<T>(radius_of(items_[hit.item])); });
-        show(found, items_, visitor);
+        found.keep_if([&](std::uint32_t i, T distance2) { return distance2 <= square<T>(radius_of(items_[i])); });
+        found.show(items_, visitor);
     }
 
     /// Calls `visitor`, as `visit_covering` does, for each item whose centre lies within `distance` of `point`, borders
@@ -109,7 +111,33 @@ public:
         if (!(distance >= 0)) { return; }
         sphere_hits<T> found;
         search(within_question<T>{point, distance}, found);
-        show(found, items_, visitor);
+        found.show(items_, visitor);
+    }
+
+    /// Packs what has come so far for faster searches and less memory; answers, order and addresses stay. O(n log n),
+    /// in sequence. Worth it when items have doubled in number, or come no more. Expects that nobody searches
+    /// meanwhile.
+    void settle() {
+        settle([](const Item&) { return std::numeric_limits<T>::max(); });
+    }
+
+    /// The same, and takes over the present radii, `radius_of(const Item&)`, where they have shrunk.
+    template <typename RadiusOf>
+        requires std::invocable<RadiusOf&, const Item&>
+    void settle(RadiusOf&& radius_of) {
+        std::vector<stored_sphere<T>> spheres;
+        spheres.reserve(size());
+        visit_spheres([&](stored_sphere<T> sphere) {
+            const T radius = radius_of(items_[sphere.item]);
+            if (usable_radius(radius)) { sphere.limit2 = std::min(sphere.limit2, limit2_of(radius)); }
+            spheres.push_back(sphere);
+        });
+        const auto near = std::partition(spheres.begin(), spheres.end(),
+                                         [](const stored_sphere<T>& s) { return max_abs(s.centre) >= farthest; });
+        forget_trees();
+        for (auto far = spheres.begin(); far != near; ++far) { append(outside_, *far); }
+        spheres.erase(spheres.begin(), near);
+        settled_ = packed_spheres<T>{std::move(spheres)};
     }
 
     /// How many items are in; from any thread.
@@ -128,11 +156,12 @@ public:
 
     /// Bytes taken from the heap, items included; for the writer.
     [[nodiscard]] std::size_t bytes() const {
-        return items_.bytes() + links_.bytes() + bricks_.bytes() + roots_.bytes();
+        return items_.bytes() + settled_.bytes() + links_.bytes() + bricks_.bytes() + roots_.bytes();
     }
 
 private:
-    using block = sphere_block<T>;
+    static constexpr unsigned lanes = 8;
+    using block = sphere_block<T, lanes>;
     using word = std::atomic<std::uint32_t>;
 
     // A block and what hangs on it: `next` is the word of the block before this one (always full), `length` counts both
@@ -284,13 +313,13 @@ private:
 
     [[nodiscard]] bool full(const cell& at, std::uint32_t blocks) const {
         const std::uint32_t newest = at.spheres.load(std::memory_order_relaxed);
-        return (newest & lane_mask) == block::capacity && links_[newest >> lane_bits].length >= blocks;
+        return (newest & lane_mask) == lanes && links_[newest >> lane_bits].length >= blocks;
     }
 
-    void append(cell& at, const vec3<T>& centre, T radius, std::uint32_t index) {
+    void append(cell& at, const stored_sphere<T>& sphere) {
         std::uint32_t newest = at.spheres.load(std::memory_order_relaxed);
-        if (newest == 0 || (newest & lane_mask) == block::capacity) { newest = add_block(newest); }
-        links_[newest >> lane_bits].set(newest & lane_mask, centre, radius, index);
+        if (newest == 0 || (newest & lane_mask) == lanes) { newest = add_block(newest); }
+        links_[newest >> lane_bits].set(newest & lane_mask, sphere);
         at.spheres.store(newest + 1, std::memory_order_release);
     }
 
@@ -304,10 +333,41 @@ private:
         return number << lane_bits;
     }
 
+    // ---- packing ----------------------------------------------------------------------------------------------------
+
+    template <typename Visitor>
+    void visit_spheres(Visitor&& visitor) const {
+        settled_.visit_all(visitor);
+        visit_list(outside_, visitor);
+        for (const auto& top : tops_) {
+            if (top.load()) { visit_list(top.load()->inside, visitor); }
+        }
+        for (std::uint32_t i = 0; i < bricks_.size(); ++i) {
+            for (const cell& octant : bricks_[i].octants) { visit_list(octant, visitor); }
+        }
+    }
+
+    template <typename Visitor>
+    void visit_list(const cell& at, Visitor&& visitor) const {
+        for (std::uint32_t newest = at.spheres.load(); newest != 0; newest = links_[newest >> lane_bits].next) {
+            for (std::uint32_t i = 0; i < (newest & lane_mask); ++i) { visitor(links_[newest >> lane_bits].at(i)); }
+        }
+    }
+
+    void forget_trees() {
+        for (auto& top : tops_) { top.store(nullptr); }
+        copy(cell{}, outside_);
+        largest_.store(0);
+        links_ = stable_array<link>{};
+        bricks_ = stable_array<brick>{};
+        roots_ = stable_array<root>{};
+    }
+
     // ---- reading ----------------------------------------------------------------------------------------------------
 
-    template <typename Question>
-    void search(const Question& question, sphere_hits<T>& found) const {
+    template <typename Question, bool D>
+    void search(const Question& question, sphere_hits<T, D>& found) const {
+        settled_.search(question, found);
         ask_list(outside_, question, found);
         const T reach = question.reach(largest_.load(std::memory_order_relaxed));
         const place<const cell> everything{vec3<T>{0}, std::numeric_limits<T>::max(), nullptr};
@@ -317,19 +377,20 @@ private:
         }
     }
 
-    template <typename Question>
-    void ask_list(const cell& at, const Question& question, sphere_hits<T>& found) const {
+    template <typename Question, bool D>
+    void ask_list(const cell& at, const Question& question, sphere_hits<T, D>& found) const {
         std::uint32_t newest = at.spheres.load(std::memory_order_acquire);
         while (newest != 0) {
             const link& here = links_[newest >> lane_bits];
+            found.reserve(lanes);
             ask(here, newest & lane_mask, question, found);
             newest = here.next;
         }
     }
 
     // Depth first on a small stack of its own; a tree too deep for it goes on in a call of this function.
-    template <typename Question>
-    void descend(const place<const cell>& from, const Question& question, sphere_hits<T>& found) const {
+    template <typename Question, bool D>
+    void descend(const place<const cell>& from, const Question& question, sphere_hits<T, D>& found) const {
         constexpr std::size_t room = 64;
         place<const cell> waiting[room];
         std::size_t count = 0;
@@ -371,6 +432,7 @@ private:
 
     void swap(octree& other) noexcept {
         std::swap(items_, other.items_);
+        std::swap(settled_, other.settled_);
         std::swap(links_, other.links_);
         std::swap(bricks_, other.bricks_);
         std::swap(roots_, other.roots_);
@@ -385,6 +447,7 @@ private:
     }
 
     stable_array<Item> items_{};
+    packed_spheres<T> settled_{};  // the spheres of before the last settle(); the others are in the trees
     stable_array<link> links_{};
     stable_array<brick> bricks_{};
     stable_array<root> roots_{};

@@ -27,7 +27,8 @@ public:
     /// Takes all elements. Expects that nobody reads either array meanwhile.
     stable_array(stable_array&& other) noexcept { swap(other); }
     stable_array& operator=(stable_array&& other) noexcept {
-        swap(other);
+        stable_array gone{std::move(other)};
+        swap(gone);
         return *this;
     }
 

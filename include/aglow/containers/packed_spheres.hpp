@@ -1,0 +1,288 @@
+// Spheres that stay, packed for the question which of them cover a point.
+//
+// A tree of boxes around spheres, sixteen wide: blocks of sixteen neighbours, nodes of sixteen blocks or nodes, all
+// full. Spheres of very different size go into trees of their own. Packed R-trees: Kamel & Faloutsos 1993.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <aglow/containers/cell_directory.hpp>
+#include <aglow/containers/sphere_search.hpp>
+#include <aglow/core/bounds.hpp>
+#include <aglow/core/numbers.hpp>
+#include <aglow/core/simd.hpp>
+#include <aglow/core/vec.hpp>
+
+namespace aglow {
+
+/// An index over spheres that no longer change. `const` calls are safe from many threads; building is in sequence,
+/// O(n log n). Costs some 22 bytes a sphere (float).
+template <typename T>
+class packed_spheres {
+public:
+    packed_spheres() = default;
+    explicit packed_spheres(std::vector<stored_sphere<T>> spheres) {
+        std::vector<bounds<T>> boxes;
+        for (const std::span<stored_sphere<T>> alike : by_size(spheres)) { roots_.push_back(plant(alike, boxes)); }
+        directory_ =
+            cell_directory<T>{boxes, [&](std::uint32_t i, const bounds<T>& cell) { return meets(blocks_[i], cell); }};
+    }
+
+    /// Adds to `found` what answers `question`, in no particular order.
+    template <typename Question, bool D>
+    void search(const Question& question, sphere_hits<T, D>& found) const {
+        search_trees(question, found);
+    }
+
+    template <bool D>
+    void search(const covering_question<T>& question, sphere_hits<T, D>& found) const {
+        if (directory_.longest() > crowded) { return search_trees(question, found); }
+        directory_.visit_near(question.point, [&](const std::uint32_t* numbers, std::uint32_t count) {
+            found.reserve(count * lanes);
+            for (std::uint32_t i = 0; i < count; ++i) { ask(blocks_[numbers[i]], question, found); }
+        });
+    }
+
+    /// Calls `visitor(const stored_sphere<T>&)` for every sphere.
+    template <typename Visitor>
+    void visit_all(Visitor&& visitor) const {
+        for (const block& b : blocks_) {
+            for (unsigned i = 0; i < lanes && b.limit2[i] > 0; ++i) { visitor(b.at(i)); }
+        }
+    }
+
+    /// Bytes taken from the heap.
+    [[nodiscard]] std::size_t bytes() const {
+        return blocks_.capacity() * sizeof(block) + nodes_.capacity() * sizeof(node) +
+               roots_.capacity() * sizeof(std::uint32_t) + directory_.bytes();
+    }
+
+private:
+    static constexpr unsigned lanes = simd::lanes;
+    // Where a cell lists more blocks than this, the trees are faster.
+    static constexpr std::size_t crowded = 96;
+    using sphere = stored_sphere<T>;
+    struct alignas(64) block : sphere_block<T, lanes> {};
+
+    // Boxes of sixteen children, blocks or nodes, from number `first` on; in steps of 1/255 of the box around them all.
+    struct alignas(64) node {
+        vec3<T> origin;
+        vec3<T> steps_per_length;
+        std::array<std::uint8_t, lanes> low[3];
+        std::array<std::uint8_t, lanes> high[3];
+        std::uint32_t first;
+        std::uint16_t used;  // a bit for each child there is
+        bool of_blocks;
+    };
+
+    // ---- search -----------------------------------------------------------------------------------------------------
+
+    template <typename Question, bool D>
+    void search_trees(const Question& question, sphere_hits<T, D>& found) const {
+        for (const std::uint32_t root : roots_) { search(root, question, found); }
+    }
+
+    template <typename Question, bool D>
+    void search(std::uint32_t root, const Question& question, sphere_hits<T, D>& found) const {
+        std::array<std::uint32_t, 8 * lanes> waiting;  // at most 15 of every level, and the last sixteen
+        const bounds<T> asked = question.box();
+        std::size_t count = 0;
+        waiting[count++] = root;
+        while (count != 0) {
+            const node& at = nodes_[waiting[--count]];
+            std::uint32_t near = boxes_near(at, asked);
+            if (at.of_blocks) {
+                found.reserve(lanes * lanes);
+                for (; near != 0; near &= near - 1) { ask(blocks_[at.first + first_lane(near)], question, found); }
+            } else {
+                for (; near != 0; near &= near - 1) { waiting[count++] = at.first + first_lane(near); }
+            }
+        }
+    }
+
+    [[nodiscard]] static std::uint32_t first_lane(std::uint32_t mask) {
+        return static_cast<std::uint32_t>(std::countr_zero(mask));
+    }
+
+    // One bit for each child whose box meets `asked`, and maybe for some that only nearly do. Rounding is no danger:
+    // the steps of a box and those of what is asked come from the same monotone function.
+    [[nodiscard]] static std::uint32_t boxes_near(const node& at, const bounds<T>& asked) {
+        const vec3<T> low = (asked.low - at.origin) * at.steps_per_length;
+        const vec3<T> high = (asked.high - at.origin) * at.steps_per_length;
+        const bool apart = !(low.x < 256 && low.y < 256 && low.z < 256 && high.x >= 0 && high.y >= 0 && high.z >= 0);
+        if (apart) { return 0; }
+        std::array<std::uint8_t, lanes> near;
+        const std::uint8_t low_x = step(low.x), low_y = step(low.y), low_z = step(low.z);
+        const std::uint8_t high_x = step(high.x), high_y = step(high.y), high_z = step(high.z);
+        for (unsigned i = 0; i < lanes; ++i) {
+            const unsigned x = unsigned{at.low[0][i] <= high_x} & unsigned{at.high[0][i] >= low_x};
+            const unsigned y = unsigned{at.low[1][i] <= high_y} & unsigned{at.high[1][i] >= low_y};
+            const unsigned z = unsigned{at.low[2][i] <= high_z} & unsigned{at.high[2][i] >= low_z};
+            near[i] = static_cast<std::uint8_t>(x & y & z);
+        }
+        return bits_of(near) & at.used;
+    }
+
+    [[nodiscard]] static std::uint8_t step(T x) {
+        return static_cast<std::uint8_t>(static_cast<int>(std::min(std::max(x, T(0)), T(255))));
+    }
+
+    // Gathers sixteen bytes of 0 or 1 into a mask.
+    [[nodiscard]] static std::uint32_t bits_of(const std::array<std::uint8_t, lanes>& bytes) {
+        const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(bytes);
+        constexpr std::uint64_t gather = 0x0102040810204080u;
+        return static_cast<std::uint32_t>(halves[0] * gather >> 56 | halves[1] * gather >> 56 << 8);
+    }
+
+    // ---- build ------------------------------------------------------------------------------------------------------
+
+    // The spheres in groups of like size, small ones first. Two groups are one where a search then meets fewer blocks.
+    [[nodiscard]] static std::vector<std::span<sphere>> by_size(std::vector<sphere>& spheres) {
+        std::vector<std::span<sphere>> groups;
+        std::sort(spheres.begin(), spheres.end(), [](const sphere& a, const sphere& b) {
+            return a.limit2 < b.limit2 || (a.limit2 == b.limit2 && a.item < b.item);
+        });
+        const T size = extent_of(spheres);
+        for (std::size_t first = 0; first < spheres.size();) {
+            std::size_t last = first;
+            const int octave = std::ilogb(spheres[first].limit2);
+            while (last < spheres.size() && std::ilogb(spheres[last].limit2) == octave) { ++last; }
+            groups.emplace_back(spheres.data() + first, last - first);
+            while (groups.size() > 1 && join_last(groups, size)) {}
+            first = last;
+        }
+        return groups;
+    }
+
+    [[nodiscard]] static T extent_of(const std::vector<sphere>& spheres) {
+        bounds<T> all;
+        for (const sphere& s : spheres) { all.add(s.centre); }
+        return all.diagonal();
+    }
+
+    static bool join_last(std::vector<std::span<sphere>>& groups, T size) {
+        const std::span<sphere> large = groups.back();
+        const std::span<sphere> small = groups[groups.size() - 2];
+        const std::span<sphere> both{small.data(), small.size() + large.size()};
+        if (blocks_met(both, size) > blocks_met(small, size) + blocks_met(large, size)) { return false; }
+        groups.pop_back();
+        groups.back() = both;
+        return true;
+    }
+
+    // About how many blocks of sixteen a search meets, were the centres spread over a square of half that diagonal.
+    [[nodiscard]] static T blocks_met(std::span<const sphere> spheres, T size) {
+        const T side = size / 2 * std::sqrt(T(lanes) / T(spheres.size()));
+        if (!(side > 0)) { return T(spheres.size()); }
+        return square(1 + 2 * spheres.back().radius() / side);
+    }
+
+    // Builds the tree over `alike`; returns its root.
+    [[nodiscard]] std::uint32_t plant(std::span<sphere> alike, std::vector<bounds<T>>& all_boxes) {
+        arrange(alike);
+        const auto first_block = static_cast<std::uint32_t>(blocks_.size());
+        std::vector<bounds<T>> boxes;
+        for (std::size_t i = 0; i < alike.size(); i += lanes) {
+            boxes.push_back(add_block(alike.subspan(i, std::min<std::size_t>(lanes, alike.size() - i))));
+        }
+        all_boxes.insert(all_boxes.end(), boxes.begin(), boxes.end());
+        std::uint32_t first = first_block;
+        for (bool of_blocks = true;; of_blocks = false) {
+            const auto next = static_cast<std::uint32_t>(nodes_.size());
+            boxes = add_level(boxes, first, of_blocks);
+            if (boxes.size() == 1) { return next; }
+            first = next;
+        }
+    }
+
+    // Orders spheres so that sixteen, 256, 4096 … in a row are neighbours: halves along the longest side, at such
+    // counts.
+    static void arrange(std::span<sphere> spheres) {
+        if (spheres.size() <= lanes) { return; }
+        std::size_t unit = lanes;
+        while (unit * lanes <= spheres.size() / 2) { unit *= lanes; }
+        const std::size_t half = (spheres.size() / 2 + unit / 2) / unit * unit;
+        bounds<T> box;
+        for (const sphere& s : spheres) { box.add(s.centre); }
+        const int axis = longest(box.extent());
+        std::nth_element(spheres.begin(), spheres.begin() + static_cast<std::ptrdiff_t>(half), spheres.end(),
+                         [axis](const sphere& a, const sphere& b) {
+                             return a.centre[axis] < b.centre[axis] ||
+                                    (a.centre[axis] == b.centre[axis] && a.item < b.item);
+                         });
+        arrange(spheres.first(half));
+        arrange(spheres.subspan(half));
+    }
+
+    [[nodiscard]] static int longest(const vec3<T>& e) { return e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2; }
+
+    // Whether a sphere of `b` reaches into `cell`.
+    [[nodiscard]] static bool meets(const block& b, const bounds<T>& cell) {
+        for (unsigned i = 0; i < lanes; ++i) {
+            const vec3<T> centre{b.x[i], b.y[i], b.z[i]};
+            const vec3<T> nearest = glm::min(glm::max(centre, cell.low), cell.high);
+            if (distance2(centre, nearest) <= b.limit2[i] * search_margin<T>) { return true; }
+        }
+        return false;
+    }
+
+    // Appends a block; returns the box around its spheres.
+    bounds<T> add_block(std::span<const sphere> spheres) {
+        block& made = blocks_.emplace_back();
+        bounds<T> box;
+        for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+            made.set(i, spheres[i]);
+            const T reach = spheres[i].radius() * search_margin<T>;
+            box.add(spheres[i].centre - reach);
+            box.add(spheres[i].centre + reach);
+        }
+        for (auto i = static_cast<std::uint32_t>(spheres.size()); i < lanes; ++i) { made.clear(i); }
+        return box;
+    }
+
+    // Appends the nodes over children with these boxes; returns the boxes of the nodes.
+    std::vector<bounds<T>> add_level(const std::vector<bounds<T>>& children, std::uint32_t first, bool of_blocks) {
+        std::vector<bounds<T>> boxes;
+        for (std::size_t i = 0; i < children.size(); i += lanes) {
+            const std::span some = std::span{children}.subspan(i, std::min<std::size_t>(lanes, children.size() - i));
+            boxes.push_back(add_node(some));
+            nodes_.back().first = first + static_cast<std::uint32_t>(i);
+            nodes_.back().of_blocks = of_blocks;
+        }
+        return boxes;
+    }
+
+    bounds<T> add_node(std::span<const bounds<T>> children) {
+        bounds<T> all;
+        for (const bounds<T>& child : children) { all.add(child); }
+        node& made = nodes_.emplace_back();
+        made.origin = all.low;
+        made.used = static_cast<std::uint16_t>((1u << children.size()) - 1u);
+        const vec3<T> extent = all.extent();
+        for (int axis = 0; axis < 3; ++axis) {
+            made.steps_per_length[axis] = extent[axis] > 0 ? T(255) / extent[axis] : T(0);
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            for (std::size_t i = 0; i < children.size(); ++i) {
+                made.low[axis][i] = step((children[i].low[axis] - all.low[axis]) * made.steps_per_length[axis]);
+                made.high[axis][i] = step((children[i].high[axis] - all.low[axis]) * made.steps_per_length[axis]);
+            }
+        }
+        return all;
+    }
+
+    std::vector<block> blocks_{};
+    std::vector<node> nodes_{};
+    std::vector<std::uint32_t> roots_{};
+    cell_directory<T> directory_{};
+};
+
+}  // namespace aglow

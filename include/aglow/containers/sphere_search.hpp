@@ -1,0 +1,218 @@
+// Spheres side by side, the questions a search asks of many at once, and its finds.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include <aglow/core/bounds.hpp>
+#include <aglow/core/simd.hpp>
+#include <aglow/core/vec.hpp>
+
+namespace aglow {
+
+/// How far rounding may carry a distance past its limit: a search box is this much wider than the spheres it looks for.
+template <typename T>
+inline constexpr T search_margin = T(1) + 8 * std::numeric_limits<T>::epsilon();
+
+/// A sphere as an index keeps it: a point belongs to it if `simd::distance2` from the centre is below `limit2`.
+template <typename T>
+struct stored_sphere {
+    vec3<T> centre;
+    T limit2;
+    std::uint32_t item;
+
+    [[nodiscard]] T radius() const { return std::sqrt(limit2); }
+};
+
+/// What a squared distance is below when the distance is at most `distance`, which is not negative.
+template <typename T>
+[[nodiscard]] T limit2_of(T distance) {
+    const T distance2 = distance * distance;
+    return distance2 <= std::numeric_limits<T>::max() ? simd::next_above(distance2) : distance2;
+}
+
+/// `Lanes` spheres by coordinate, as vector instructions like them. An unused lane has a `limit2` of 0.
+template <typename T, unsigned Lanes>
+struct sphere_block {
+    T x[Lanes];
+    T y[Lanes];
+    T z[Lanes];
+    T limit2[Lanes];
+    std::uint32_t item[Lanes];
+
+    /// Makes a lane that answers no question.
+    void clear(std::uint32_t lane) { set(lane, {vec3<T>{std::numeric_limits<T>::infinity()}, T(0), 0}); }
+
+    void set(std::uint32_t lane, const stored_sphere<T>& sphere) {
+        x[lane] = sphere.centre.x;
+        y[lane] = sphere.centre.y;
+        z[lane] = sphere.centre.z;
+        limit2[lane] = sphere.limit2;
+        item[lane] = sphere.item;
+    }
+    [[nodiscard]] stored_sphere<T> at(std::uint32_t lane) const {
+        return {{x[lane], y[lane], z[lane]}, limit2[lane], item[lane]};
+    }
+};
+
+/// The finds of one search: items and, if wanted, the squared distances of their centres. On the stack until they are
+/// many.
+template <typename T, bool WithDistances = false>
+class sphere_hits {
+public:
+    sphere_hits() = default;
+    sphere_hits(const sphere_hits&) = delete;
+    sphere_hits& operator=(const sphere_hits&) = delete;
+
+    /// Makes room for `more` finds, and for a pack of lanes to be written behind them.
+    void reserve(std::size_t more) {
+        if (count_ + more + simd::lanes > capacity_) { move_to_heap(2 * (count_ + more) + simd::lanes); }
+    }
+
+    /// Appends a find. Expects room for it.
+    void append(std::uint32_t item, T distance2) {
+        items_[count_] = item;
+        if constexpr (WithDistances) { distances2_[count_] = distance2; }
+        ++count_;
+    }
+
+    /// Appends the lanes in `mask`. Expects room for them.
+    void append(const std::uint32_t* items, const simd::best<T>& distances2, std::uint32_t mask) {
+        simd::best<T>::compress(items_ + count_, items, mask);
+        if constexpr (WithDistances) { simd::best<T>::compress(distances2_ + count_, distances2, mask); }
+        count_ += static_cast<std::size_t>(std::popcount(mask));
+    }
+
+    /// Drops the finds for which `wanted(item, distance2)` is false.
+    template <typename Wanted>
+    void keep_if(Wanted&& wanted) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (wanted(items_[i], distances2_[i])) { items_[kept++] = items_[i]; }
+        }
+        count_ = kept;
+    }
+
+    /// Calls `visitor(items[i])` for the found i, in ascending order; the visitor may return false to stop.
+    template <typename Items, typename Visitor>
+    void show(const Items& items, Visitor& visitor) {
+        sort();
+        for (std::size_t i = 0; i < count_; ++i) {
+            if constexpr (std::is_void_v<decltype(visitor(items[items_[i]]))>) {
+                visitor(items[items_[i]]);
+            } else {
+                if (!visitor(items[items_[i]])) { return; }
+            }
+        }
+    }
+
+private:
+    static constexpr std::size_t few = 256;
+    static constexpr std::size_t lanes = simd::lanes;
+
+    void sort() {
+        if (count_ > lanes) {
+            std::sort(items_, items_ + count_);
+        } else if (count_ > 1) {
+            sort_sixteen();
+        }
+    }
+
+    // Counts for every find how many are smaller: no branch depends on the order they came in.
+    void sort_sixteen() {
+        std::array<std::uint32_t, lanes> came, smaller{};
+        std::copy_n(items_, lanes, came.begin());
+        for (std::size_t i = 0; i < count_; ++i) {
+            for (std::size_t j = 0; j < lanes; ++j) { smaller[j] += came[i] < came[j]; }
+        }
+        for (std::size_t i = 0; i < count_; ++i) { items_[smaller[i]] = came[i]; }
+    }
+
+    void move_to_heap(std::size_t capacity) {
+        auto items = std::make_unique<std::uint32_t[]>(capacity);
+        std::copy_n(items_, count_, items.get());
+        many_items_.swap(items);
+        items_ = many_items_.get();
+        if constexpr (WithDistances) {
+            auto distances2 = std::make_unique<T[]>(capacity);
+            std::copy_n(distances2_, count_, distances2.get());
+            many_distances2_.swap(distances2);
+            distances2_ = many_distances2_.get();
+        }
+        capacity_ = capacity;
+    }
+
+    std::array<std::uint32_t, few> few_items_;
+    std::array<T, WithDistances ? few : 0> few_distances2_;
+    std::unique_ptr<std::uint32_t[]> many_items_{};
+    std::unique_ptr<T[]> many_distances2_{};
+    std::uint32_t* items_ = few_items_.data();
+    T* distances2_ = few_distances2_.data();
+    std::size_t count_ = 0;
+    std::size_t capacity_ = few;
+};
+
+/// Which spheres cover `point`?
+template <typename T>
+struct covering_question {
+    vec3<T> point;
+
+    /// Half the width of the box around the point that holds the centre of every answer with a radius up to `largest`.
+    [[nodiscard]] T reach(T largest) const { return largest * search_margin<T>; }
+    /// The box that meets the box around every answer.
+    [[nodiscard]] bounds<T> box() const { return {point, point}; }
+    [[nodiscard]] T limit2(T stored) const { return stored; }
+    template <typename Pack>
+    [[nodiscard]] Pack limits2(const T* stored) const {
+        return Pack::load(stored);
+    }
+};
+
+/// Which spheres have their centre within a distance of `point`?
+template <typename T>
+struct within_question {
+    vec3<T> point;
+    T half_width;
+    T limit;
+
+    within_question(const vec3<T>& p, T distance)
+        : point{p}, half_width{distance * search_margin<T>}, limit{limit2_of(distance)} {}
+
+    [[nodiscard]] T reach(T) const { return half_width; }
+    [[nodiscard]] bounds<T> box() const { return {point - half_width, point + half_width}; }
+    [[nodiscard]] T limit2(T) const { return limit; }
+    template <typename Pack>
+    [[nodiscard]] Pack limits2(const T*) const {
+        return Pack::all(limit);
+    }
+};
+
+/// Adds the answers in a block of sixteen to `found`, which has room for them.
+template <typename T, typename Question, bool D>
+void ask(const sphere_block<T, simd::lanes>& block, const Question& question, sphere_hits<T, D>& found) {
+    using pack = simd::best<T>;
+    const pack distances2 = pack::length2(pack::sub(pack::load(block.x), pack::all(question.point.x)),
+                                          pack::sub(pack::load(block.y), pack::all(question.point.y)),
+                                          pack::sub(pack::load(block.z), pack::all(question.point.z)));
+    const std::uint32_t mask = pack::less(distances2, question.template limits2<pack>(block.limit2));
+    found.append(block.item, distances2, mask);
+}
+
+/// Adds the answers among the first `count` spheres of a block to `found`, which has room for them; looks at no others.
+template <typename T, unsigned Lanes, typename Question, bool D>
+void ask(const sphere_block<T, Lanes>& block, std::uint32_t count, const Question& question, sphere_hits<T, D>& found) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const T distance2 = simd::distance2(vec3<T>{block.x[i], block.y[i], block.z[i]}, question.point);
+        if (distance2 < question.limit2(block.limit2[i])) { found.append(block.item[i], distance2); }
+    }
+}
+
+}  // namespace aglow
