@@ -97,7 +97,7 @@ public:
     template <std::floating_point T, Probe P, Executor E>
     until_check scout(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
         audit_options look = fresh_options();
-        look.probes = options_.scout_probes * (doubtful() ? 4 : 1);
+        look.probes = options_.scout_probes * (worth_a_sharper_look() ? 4 : 1);
         look.target = std::max(look.target, checks_.empty() ? 0.3 : 0.5 * checks_.back().error);
         const audited_picture<T> plain{.image = picture.image, .guess = picture.guess};
         audit_sample<T> sample{plain, look};
@@ -167,8 +167,11 @@ private:
         return look;
     }
 
-    /// Whether the error seems to stay above the target, so that a sharper look is worth its cost.
-    [[nodiscard]] bool doubtful() const { return distinct_ >= 3 && decay().floor > 0.8 * options_.audit.target; }
+    /// Whether a sharper look is worth its cost: the error seems to stay above the target, or to have come near it.
+    [[nodiscard]] bool worth_a_sharper_look() const {
+        if (distinct_ < 3) { return false; }
+        return decay().floor > 0.8 * options_.audit.target || checks_.back().error < 1.5 * options_.audit.target;
+    }
 
     /// The error now, by all measurements together where they are enough for a fit.
     [[nodiscard]] double smoothed_error(double work) const {

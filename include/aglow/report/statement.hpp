@@ -13,6 +13,7 @@ namespace aglow {
 /// `share` as a percentage with three significant digits, such as "4.13 %"; "unknown" where it is not finite.
 [[nodiscard]] inline std::string percent(double share) {
     if (!is_finite(share)) { return "unknown"; }
+    if (share == 0) { return "0 %"; }
     char digits[32];
     const auto end = std::to_chars(digits, digits + sizeof digits, 100 * share, std::chars_format::general, 3).ptr;
     return std::string(digits, end) + " %";

@@ -1,0 +1,16 @@
+// A study as a page for people: self-contained HTML, and a short text of it in Markdown.
+#pragma once
+
+#include <string>
+
+#include "error_vs_time/study.hpp"
+
+namespace error_vs_time {
+
+/// The whole report as one HTML file that asks nothing of a network.
+[[nodiscard]] std::string report_html(const study& all);
+
+/// Times to an error, speed-ups and certificates as Markdown tables.
+[[nodiscard]] std::string report_markdown(const study& all);
+
+}  // namespace error_vs_time

@@ -1,0 +1,20 @@
+// A small table that can be written as HTML or as Markdown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace error_vs_time {
+
+/// The first column is words, the others are numbers.
+struct table {
+    std::string caption{};
+    std::vector<std::string> head{};
+    std::vector<std::vector<std::string>> rows{};
+};
+
+/// Empty where the table has no rows.
+[[nodiscard]] std::string html(const table& what);
+[[nodiscard]] std::string markdown(const table& what);
+
+}  // namespace error_vs_time
