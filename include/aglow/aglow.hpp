@@ -94,7 +94,6 @@
 #include <aglow/report/audit_result.hpp>
 #include <aglow/report/audit_sample.hpp>
 #include <aglow/report/bias_variance.hpp>
-#include <aglow/report/bias_variance.hpp>
 #include <aglow/report/bootstrap.hpp>
 #include <aglow/report/confidence.hpp>
 #include <aglow/report/conformal.hpp>
