@@ -1,0 +1,181 @@
+#include <aglow/algorithms/film.hpp>
+
+#include <atomic>
+#include <limits>
+
+#include <glm/vec3.hpp>
+
+#include "support/archetypes.hpp"
+#include "support/catch.hpp"
+
+using namespace aglow;
+
+namespace {
+
+using S = glm::vec3;
+
+/// What any function of the ray and its numbers says.
+template <typename F>
+struct painter {
+    using scalar = float;
+    F paint;
+    template <typename N>
+    [[nodiscard]] estimate<S> operator()(const ray<float>& eye, const N& numbers) const {
+        return paint(eye, numbers);
+    }
+};
+template <typename F>
+painter(F) -> painter<F>;
+
+/// The point on the film is where the ray starts.
+constexpr auto flat_eye = [](const vec2<float>& film) { return ray<float>{{film.x, film.y, 0}, {0, 0, 1}}; };
+
+const painter noise{[](const ray<float>&, const auto& numbers) {
+    const float x = numbers.at(1, purpose::scatter).next_1d();
+    return estimate<S>{{x, 2 * x, x * x}, 0.25f};
+}};
+
+template <typename A>
+bool same(const A& a, const A& b) {
+    for (std::size_t y = 0; y < a.height(); ++y) {
+        for (std::size_t x = 0; x < a.width(); ++x) {
+            if (a.radiance(x, y) != b.radiance(x, y) || a.error(x, y) != b.error(x, y)) { return false; }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("film: every pixel sees its own square, row 0 on top") {
+    film<S> picture{5, 3};
+    const painter where{[](const ray<float>& r, const auto&) { return estimate<S>{{r.origin.x, r.origin.y, 1}, 0}; }};
+    picture.expose(flat_eye, where, {.samples = 64});
+    for (std::size_t y = 0; y < 3; ++y) {
+        for (std::size_t x = 0; x < 5; ++x) {
+            CHECK(picture.radiance(x, y).x == Approx(static_cast<float>(x) + 0.5f).margin(0.01));
+            CHECK(picture.radiance(x, y).y == Approx(static_cast<float>(y) + 0.5f).margin(0.01));
+        }
+    }
+    CHECK(picture.samples() == 64);
+}
+
+TEST_CASE("film: 1, 2, 3 and 8 threads and any executor expose the same picture") {
+    film<S> one{17, 13};
+    one.expose(flat_eye, noise);
+    const auto check = [&](const auto& run) {
+        film<S> other{17, 13};
+        other.expose(flat_eye, noise, {}, run);
+        CHECK(same(one, other));
+    };
+    for (const unsigned threads : {1u, 2u, 3u, 8u}) { check(own_threads{threads}); }
+    check(archetypes::executor{});
+}
+
+TEST_CASE("film: exposed twice is exposed once for longer") {
+    film<S> once{4, 4};
+    once.expose(flat_eye, noise, {.samples = 24});
+    film<S> twice{4, 4};
+    twice.expose(flat_eye, noise, {.samples = 8});
+    twice.expose(flat_eye, noise, {.samples = 16});
+    CHECK(same(once, twice));
+    CHECK(twice.samples() == 24);
+    film<S> other{4, 4};
+    other.expose(flat_eye, noise, {.samples = 24, .seed = 1});
+    CHECK_FALSE(same(once, other));
+}
+
+TEST_CASE("film: the error is the guess and the standard error of the mean") {
+    // Alternating 1 and 3 in the brightest band: variance 1.
+    std::atomic<int> turn{0};
+    const painter alternating{[&](const ray<float>&, const auto&) {
+        return estimate<S>{{0, turn++ % 2 == 0 ? 1.0f : 3.0f, 0}, 0.25f};
+    }};
+    film<S> picture{1, 1};
+    CHECK(picture.error(0, 0) == 0);
+    picture.expose(flat_eye, alternating, {.samples = 1});
+    CHECK(picture.error(0, 0) == Approx(0.25f + 1));
+    picture.expose(flat_eye, alternating, {.samples = 99});
+    CHECK(picture.error(0, 0) == Approx(0.25 + 1 / std::sqrt(99.0)));
+    CHECK(picture.radiance(0, 0).y == 2);
+}
+
+TEST_CASE("film: a small spread on a bright ground is seen, and faint light as well as strong") {
+    for (const float level : {1e4f, 1.0f, 1e-18f, 1e18f}) {
+        std::atomic<int> turn{0};
+        const painter ripple{[&](const ray<float>&, const auto&) {
+            return estimate<S>{S{turn++ % 2 == 0 ? level : level * 1.001f}, 0};
+        }};
+        film<S> picture{1, 1};
+        picture.expose(flat_eye, ripple, {.samples = 1000});
+        CAPTURE(level);
+        CHECK(picture.error(0, 0) / level == Approx(0.0005 / std::sqrt(999.0)).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("film: broken samples are left out and counted, broken guesses count nothing") {
+    const float broken = std::numeric_limits<float>::quiet_NaN();
+    std::atomic<int> turn{0};
+    const painter flawed{[&](const ray<float>&, const auto&) {
+        switch (turn++ % 4) {
+            case 0: return estimate<S>{{1, broken, 1}, 0};
+            case 1: return estimate<S>{{1, 1, -1}, 0};
+            case 2: return estimate<S>{S{std::numeric_limits<float>::infinity()}, 0};
+            default: return estimate<S>{S{5}, broken};
+        }
+    }};
+    film<S> picture{3, 2};
+    picture.expose(flat_eye, flawed, {.samples = 16});
+    CHECK(picture.dropped() == 3 * 2 * 12);
+    for (std::size_t x = 0; x < 3; ++x) {
+        CHECK(picture.radiance(x, 1) == S{5});
+        CHECK(picture.error(x, 1) == 0);
+    }
+}
+
+TEST_CASE("film: progress goes up to one, and false stops") {
+    film<S> picture{2, 10};
+    double last = 0;
+    picture.expose(flat_eye, noise, {.samples = 1, .progress = [&](double share) {
+                                         CHECK(share > last);
+                                         last = share;
+                                         return true;
+                                     }});
+    CHECK(last == 1);
+    int rows = 0;
+    film<S> stopped{2, 10};
+    stopped.expose(flat_eye, noise, {.samples = 1, .progress = [&](double) { return ++rows < 3; }});
+    CHECK(rows == 3);
+    CHECK(stopped.radiance(0, 2) != S{0});
+    CHECK(stopped.radiance(0, 3) == S{0});
+}
+
+TEST_CASE("film: a picture of no pixels, or of no samples, is no trouble") {
+    film<S> none{0, 0};
+    none.expose(flat_eye, noise);
+    film<S> column{0, 4};
+    column.expose(flat_eye, noise);
+    film<S> dark{2, 2};
+    dark.expose(flat_eye, noise, {.samples = 0});
+    CHECK(dark.radiance(1, 1) == S{0});
+    CHECK(dark.error(1, 1) == 0);
+}
+
+TEST_CASE("film: light brighter by a power of two gives picture and error brighter by it, exactly") {
+    const auto exposed = [](float scale) {
+        const painter scaled{[=](const ray<float>& r, const auto& numbers) {
+            const auto e = noise(r, numbers);
+            return estimate<S>{e.value * scale, e.error * scale};
+        }};
+        film<S> picture{3, 3};
+        picture.expose(flat_eye, scaled);
+        return picture;
+    };
+    const auto here = exposed(1);
+    for (int k = -60; k <= 60; k += 4) {
+        const float s = std::ldexp(1.0f, k);
+        const auto there = exposed(s);
+        CHECK(there.radiance(1, 2) == here.radiance(1, 2) * s);
+        CHECK(there.error(1, 2) == here.error(1, 2) * s);
+    }
+}
