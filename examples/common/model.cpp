@@ -1,0 +1,207 @@
+#include "common/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/version.h>
+#include <assimp/Importer.hpp>
+
+#include <aglow/core/bounds.hpp>
+
+namespace host {
+namespace {
+
+using colour = vec3<float>;
+
+colour limited(const aiColor4D& c, float most = 1) {
+    const auto channel = [most](float x) { return x > 0 ? std::min(x, most) : 0.0f; };
+    return {channel(c.r), channel(c.g), channel(c.b)};
+}
+
+vec3<float> point(const aiVector3D& p) { return {p.x, p.y, p.z}; }
+
+/// A property of a material; `otherwise` where the file does not say.
+float number(const aiMaterial& m, const char* key, unsigned type, unsigned index, float otherwise) {
+    float value = otherwise;
+    return m.Get(key, type, index, value) == aiReturn_SUCCESS ? value : otherwise;
+}
+colour shade(const aiMaterial& m, const char* key, unsigned type, unsigned index, const aiColor4D& otherwise,
+             float most = 1) {
+    aiColor4D value = otherwise;
+    return limited(m.Get(key, type, index, value) == aiReturn_SUCCESS ? value : otherwise, most);
+}
+
+/// A gloss of width `alpha`; below what the facets allow it is a mirror.
+void set_gloss(material<float>& made, const colour& reflectance, float alpha) {
+    if (alpha > 0.002f) {
+        made.glossy = reflectance;
+        made.roughness = std::min(alpha, 1.0f);
+    } else {
+        made.mirror = reflectance;
+    }
+}
+
+/// glTF 2.0, appendix B: metals reflect their colour, others 4 % above a diffuse base.
+material<float> physically_based(const aiMaterial& m) {
+    const colour base = shade(m, AI_MATKEY_BASE_COLOR, {1, 1, 1, 1});
+    const float metal = std::clamp(number(m, AI_MATKEY_METALLIC_FACTOR, 1), 0.0f, 1.0f);
+    const float rough = number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1);
+    material<float> made;
+    if (number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0) > 0.5f) {
+        made.index = std::max(1.0f, number(m, AI_MATKEY_REFRACTI, 1.5f));
+        return made;
+    }
+    made.diffuse = base * (0.96f * (1 - metal));
+    set_gloss(made, colour{0.04f * (1 - metal)} + base * metal, rough * rough);
+    return made;
+}
+
+/// Wavefront's Kd, Ks, Ns, d, Ni and illum.
+material<float> phong_like(const aiMaterial& m) {
+    const colour specular = shade(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0, 1});
+    const float opacity = number(m, AI_MATKEY_OPACITY, 1);
+    const float index = number(m, AI_MATKEY_REFRACTI, 1);
+    int illum = 0;
+    m.Get("$mat.illum", 0, 0, illum);
+    material<float> made;
+    if ((opacity < 0.5f && index > 1) || illum == 4 || illum == 6 || illum == 7) {
+        made.index = index > 1 ? index : 1.5f;
+        return made;
+    }
+    made.diffuse = shade(m, AI_MATKEY_COLOR_DIFFUSE, {0.6f, 0.6f, 0.6f, 1});
+    // Blinn's exponent as a width of facets (Walter et al. 2007, section 5).
+    const float exponent = std::max(0.0f, number(m, AI_MATKEY_SHININESS, 0));
+    const float alpha = illum == 3 || illum == 5 ? 0 : std::sqrt(2 / (exponent + 2));
+    if (!aglow::is_black(specular) && exponent > 0) { set_gloss(made, specular, alpha); }
+    return made;
+}
+
+/// Scales what reflects more than it receives down to what is possible.
+void make_possible(material<float>& made) {
+    const float sum = aglow::max_component(made.diffuse + made.glossy + made.mirror);
+    if (sum <= 1) { return; }
+    const float share = 0.9999f / sum;
+    made.diffuse *= share;
+    made.glossy *= share;
+    made.mirror *= share;
+}
+
+material<float> converted(const aiMaterial& m) {
+    float metal = 0;
+    const bool physical = m.Get(AI_MATKEY_METALLIC_FACTOR, metal) == aiReturn_SUCCESS;
+    material<float> made = physical ? physically_based(m) : phong_like(m);
+    const float strength = number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1);
+    made.radiance = shade(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0, 1}, 1e6f) * strength;
+    make_possible(made);
+    return made;
+}
+
+/// The mean colour of a mesh's corners, where it has any.
+std::optional<colour> corner_colour(const aiMesh& mesh) {
+    if (!mesh.HasVertexColors(0)) { return std::nullopt; }
+    colour sum{0};
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) { sum += limited(mesh.mColors[0][i]); }
+    return sum / static_cast<float>(mesh.mNumVertices);
+}
+
+void add_mesh(model& into, const aiMesh& mesh, const aiMatrix4x4& place) {
+    model::mesh made{.material = mesh.mMaterialIndex};
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) { made.corners.push_back(point(place * mesh.mVertices[i])); }
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+        const aiFace& f = mesh.mFaces[i];
+        if (f.mNumIndices == 3) { made.triangles.push_back({f.mIndices[0], f.mIndices[1], f.mIndices[2]}); }
+    }
+    if (made.triangles.empty()) { return; }
+    if (const auto mean = corner_colour(mesh)) {
+        material<float> own = into.materials[mesh.mMaterialIndex];
+        own.diffuse = *mean * 0.9f;
+        make_possible(own);
+        made.material = into.materials.size();
+        into.materials.push_back(own);
+    }
+    into.meshes.push_back(std::move(made));
+}
+
+void add_node(model& into, const aiScene& scene, const aiNode& node, const aiMatrix4x4& above) {
+    const aiMatrix4x4 place = above * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) { add_mesh(into, *scene.mMeshes[node.mMeshes[i]], place); }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) { add_node(into, scene, *node.mChildren[i], place); }
+}
+
+/// Where a named light or camera stands: the product of its node's and all parents' transformations.
+aiMatrix4x4 place_of(const aiScene& scene, const aiString& name) {
+    aiMatrix4x4 place;
+    for (const aiNode* n = scene.mRootNode->FindNode(name); n; n = n->mParent) { place = n->mTransformation * place; }
+    return place;
+}
+
+void add_lights(model& into, const aiScene& scene) {
+    for (unsigned i = 0; i < scene.mNumLights; ++i) {
+        const aiLight& light = *scene.mLights[i];
+        if (light.mType != aiLightSource_POINT) {
+            into.notes.push_back(std::string{"light "} + light.mName.C_Str() + ": left out, only point lights are read");
+            continue;
+        }
+        const aiMatrix4x4 place = place_of(scene, light.mName);
+        const aiColor3D& c = light.mColorDiffuse;
+        into.lamps.push_back({{place.a4, place.b4, place.c4}, limited({c.r, c.g, c.b, 1}, 1e9f)});
+    }
+}
+
+/// The tangent of half the angle from top to bottom. Up to 5.2 assimp's glTF reader made the angle from side to side by
+/// multiplying the other with the aspect, later by its tangent.
+float half_tangent(const aiCamera& c) {
+    const float aspect = c.mAspect > 0 ? c.mAspect : 1;
+    const bool multiplied = aiGetVersionMajor() < 5 || (aiGetVersionMajor() == 5 && aiGetVersionMinor() <= 2);
+    return multiplied ? std::tan(c.mHorizontalFOV / aspect / 2) : std::tan(c.mHorizontalFOV / 2) / aspect;
+}
+
+/// Of the formats read here glTF alone has cameras and lights. They stand where their node does; assimp says so a second
+/// time in `mPosition`, which is not to be added.
+std::optional<camera<float>> first_camera(const aiScene& scene) {
+    if (scene.mNumCameras == 0) { return std::nullopt; }
+    const aiCamera& c = *scene.mCameras[0];
+    const aiMatrix4x4 place = place_of(scene, c.mName);
+    const aiMatrix3x3 turn{place};
+    const vec3<float> forward = glm::normalize(point(turn * c.mLookAt));
+    const vec3<float> right = glm::normalize(glm::cross(forward, point(turn * c.mUp)));
+    return camera<float>{.origin = {place.a4, place.b4, place.c4},
+                         .forward = forward,
+                         .up = glm::cross(right, forward),
+                         .tangent = half_tangent(c)};
+}
+
+bool has_textures(const aiScene& scene) {
+    for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+        if (scene.mMaterials[i]->GetTextureCount(aiTextureType_DIFFUSE) > 0) { return true; }
+    }
+    return false;
+}
+
+}  // namespace
+
+model read_model(const std::filesystem::path& file) {
+    Assimp::Importer importer;
+    // Points and lines are no surfaces.
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const aiScene* scene =
+        importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType |
+                                             aiProcess_JoinIdenticalVertices | aiProcess_FindDegenerates);
+    if (!scene || !scene->mRootNode) {
+        throw std::runtime_error("cannot read " + file.string() + ": " + importer.GetErrorString());
+    }
+    model made;
+    for (unsigned i = 0; i < scene->mNumMaterials; ++i) { made.materials.push_back(converted(*scene->mMaterials[i])); }
+    add_node(made, *scene, *scene->mRootNode, aiMatrix4x4{});
+    if (made.meshes.empty()) { throw std::runtime_error("cannot read " + file.string() + ": no triangles in it"); }
+    add_lights(made, *scene);
+    made.camera = first_camera(*scene);
+    if (has_textures(*scene)) { made.notes.push_back("textures: left out, each material has one colour"); }
+    return made;
+}
+
+}  // namespace host
