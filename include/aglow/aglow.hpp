@@ -63,6 +63,7 @@
 #include <aglow/estimators/photon.hpp>
 #include <aglow/estimators/photon_map.hpp>
 #include <aglow/estimators/record_blend.hpp>
+#include <aglow/estimators/record_neighbours.hpp>
 #include <aglow/estimators/record_reach.hpp>
 
 // algorithms: light on its way

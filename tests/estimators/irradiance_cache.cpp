@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <aglow/core/random.hpp>
@@ -350,4 +351,89 @@ TEST_CASE("irradiance_cache: refuses options that make no sense, by name") {
     o = {};
     o.reach.maximum_radius = 1e-9;
     CHECK(refusal(o).find("maximum_radius") != std::string::npos);
+}
+
+namespace {
+
+/// A floor of records that are off by a relative noise of the given standard deviation.
+template <typename Light>
+irradiance_cache<float> noisy_floor(const Light& light, bool smoothing, float noise, std::uint64_t seed) {
+    auto o = by_distance(error_metric::hessian);
+    o.smoothing = smoothing;
+    irradiance_cache<float> c{10.f, o};
+    random_sampler<float> random{seed};
+    for (int i = 0; i < 600; ++i) {
+        irradiance_estimate<float, float> e;
+        e.position = {random.next_1d() * 3, random.next_1d() * 3, 0};
+        // Uniform noise of the given standard deviation.
+        e.irradiance = light(e.position.x) * (1 + noise * std::sqrt(12.f) * (random.next_1d() - 0.5f));
+        e.relative_noise = noise;
+        e.mean_inverse_distance = 1 / 0.4f;
+        e.rays = 100;
+        c.insert(e);
+    }
+    return c;
+}
+
+/// Mean and standard deviation of a frozen floor's records relative to the light.
+template <typename Light>
+std::pair<double, double> spread(const irradiance_cache<float>::frozen& c, const Light& light) {
+    double mean = 0;
+    double square_mean = 0;
+    for (std::uint32_t i = 0; i < c.size(); ++i) {
+        const double ratio = c[i].irradiance() / light(c[i].position().x);
+        mean += ratio / c.size();
+        square_mean += ratio * ratio / c.size();
+    }
+    return {mean, std::sqrt(square_mean - mean * mean)};
+}
+
+}  // namespace
+
+TEST_CASE("irradiance_cache: freezing averages noise among neighbours and does not darken") {
+    const auto constant = [](float) { return 2.f; };
+    const auto [rough_mean, rough] = spread(noisy_floor(constant, false, 0.2f, 1).freeze(), constant);
+    const auto [mean, smooth] = spread(noisy_floor(constant, true, 0.2f, 1).freeze(), constant);
+    CHECK(rough == Approx(0.2).epsilon(0.1));
+    CHECK(smooth < 0.5 * rough);
+    CHECK(std::abs(mean - rough_mean) < 0.01);
+}
+
+TEST_CASE("irradiance_cache: the noise told after smoothing is the noise there is") {
+    const auto constant = [](float) { return 2.f; };
+    const auto frozen = noisy_floor(constant, true, 0.2f, 2).freeze();
+    double told2 = 0;
+    for (std::uint32_t i = 0; i < frozen.size(); ++i) {
+        told2 += double{square(frozen[i].relative_noise())} / frozen.size();
+    }
+    CHECK(std::sqrt(told2) / spread(frozen, constant).second == Approx(1).epsilon(0.35));
+}
+
+TEST_CASE("irradiance_cache: smoothing stops at a step of light that is greater than the noise") {
+    const auto step = [](float x) { return x < 1.5f ? 1.f : 3.f; };
+    const auto frozen = noisy_floor(step, true, 0.02f, 3).freeze();
+    int blurred = 0;
+    for (std::uint32_t i = 0; i < frozen.size(); ++i) {
+        const float ratio = frozen[i].irradiance() / step(frozen[i].position().x);
+        blurred += std::abs(ratio - 1) > 0.15f;
+    }
+    CHECK(blurred < 15);
+}
+
+TEST_CASE("irradiance_cache: what is exact is not smoothed") {
+    const auto wave = [](float x) { return 2 + std::sin(3 * x); };
+    const auto frozen = noisy_floor(wave, true, 0, 4).freeze();
+    for (std::uint32_t i = 0; i < frozen.size(); ++i) { CHECK(frozen[i].irradiance() == wave(frozen[i].position().x)); }
+}
+
+TEST_CASE("irradiance_cache: nearest finds a record where lookup finds none, on the right side") {
+    cache c{10.f, by_distance()};
+    c.insert(estimate_at({0, 0, 0}, up, {1, 1, 1}, 1));
+    c.insert(estimate_at({3, 0, 0}, up, {2, 2, 2}, 1));
+    c.insert(estimate_at({2, 0, 0}, -up, {7, 7, 7}, 1));
+    const auto frozen = c.freeze();
+    CHECK_FALSE(frozen.lookup({1.9f, 0, 0}, up));
+    CHECK(frozen.nearest({1.9f, 0, 0}, up).irradiance.x == 2);
+    CHECK(frozen.nearest({1.1f, 0, 0}, up).irradiance.x == 1);
+    CHECK_FALSE(cache::frozen{}.nearest({0, 0, 0}, up));
 }

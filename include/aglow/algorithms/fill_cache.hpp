@@ -42,9 +42,9 @@ struct fill_cache_options {
     /// Names the run of random numbers.
     std::uint64_t seed{0};
 
-    /// The sum of weights that a candidate wants; above the cache's own `minimum_weight`, so that the picture finds
-    /// enough between candidates too.
-    double minimum_weight{0.1};
+    /// The sum of weights that a candidate wants. Well above the cache's own `minimum_weight`: several records at each
+    /// point average their noise, and the picture finds enough between candidates too.
+    double minimum_weight{0.5};
 
     /// The spacing of each round relative to the one before, in (0, 1).
     double refinement{0.7};

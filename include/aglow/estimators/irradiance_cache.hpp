@@ -10,6 +10,8 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -25,6 +27,7 @@
 #include <aglow/estimators/irradiance_estimate.hpp>
 #include <aglow/estimators/irradiance_record.hpp>
 #include <aglow/estimators/record_blend.hpp>
+#include <aglow/estimators/record_neighbours.hpp>
 #include <aglow/estimators/record_reach.hpp>
 
 namespace aglow {
@@ -37,6 +40,11 @@ struct irradiance_cache_options {
     /// A record reaches no farther than a neighbour's reach and the way to it, so what one of them saw near counts for
     /// all around (Krivanek et al. 2006).
     bool clamp_neighbours{true};
+
+    /// When frozen, each record takes the irradiance that it and its neighbours' extrapolations agree on, weighed by
+    /// noise and by how wrong they proved. Worth as much as half as many rays again where radiance is noisy. Needs
+    /// noise to be kept.
+    bool smoothing{true};
 };
 
 /// What became of an estimate handed to a cache.
@@ -142,6 +150,25 @@ public:
         return answer;
     }
 
+    /// What the record says that fits best, however badly: for the odd point between all reaches. Asks every record, so
+    /// takes as long as a few gather rays. False only where no record faces the same half space.
+    [[nodiscard]] irradiance_answer<S, T> nearest(const vec3<T>& point, const vec3<T>& normal) const {
+        const item* best = nullptr;
+        T least = std::numeric_limits<T>::infinity();
+        for (const item& i : items_) {
+            const frame<T> axes = i.record.axes();
+            const T turn = length2(normal - axes.z) / 2;
+            const T misfit = i.record.distance2(i.record.local(point, axes)) + turn / limits_.turn;
+            if (turn < 1 && misfit < least) {
+                least = misfit;
+                best = &i;
+            }
+        }
+        if (!best) { return {}; }
+        const T error = static_cast<T>(max_component(best->record.irradiance())) * std::min(T(1), least * best->bend);
+        return {best->record.irradiance(), error, limits_.weight, 1};
+    }
+
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(items_.size()); }
     [[nodiscard]] const record& operator[](std::uint32_t index) const { return items_[index].record; }
     [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
@@ -224,15 +251,18 @@ public:
     [[nodiscard]] std::size_t refused() const { return refused_; }
 
     /// The records in their present reach and in their order, ready to be asked only. Each learns from its neighbours
-    /// how far off its extrapolation is: the upper quartile of |E_i + grad d - E_j| / d², without the noise of both.
+    /// how far off its extrapolation is, and, with `smoothing`, what they take its irradiance to be.
     template <Executor E = in_sequence>
     [[nodiscard]] frozen freeze(const E& run = {}) const {
+        std::vector<T> bends(size());
+        for_each_record(run, [&](std::size_t i, const item& one) {
+            bends[i] = detail::learnt_bend(tree_, one.record, own_bend(one.record.radius()), limits_);
+        });
         std::vector<typename frozen::item> items(size());
-        for_each_block(run, items.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const item& one = tree_[static_cast<std::uint32_t>(i)];
-                items[i] = {one.record, learnt_bend(one)};
-            }
+        for_each_record(run, [&](std::size_t i, const item& one) {
+            const bool smooth = options_.smoothing && Features.noise;
+            const std::span<const T> all{bends};
+            items[i] = {smooth ? detail::smoothed(tree_, one.record, all, limits_) : one.record, bends[i]};
         });
         return frozen{std::move(items), options_};
     }
@@ -245,6 +275,13 @@ private:
         T lowest;
         std::uint32_t index;
     };
+
+    template <Executor E, typename Body>
+    void for_each_record(const E& run, Body&& body) const {
+        for_each_block(run, size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) { body(i, tree_[static_cast<std::uint32_t>(i)]); }
+        });
+    }
 
     record_status refuse(record_status why) {
         ++refused_;
@@ -280,39 +317,6 @@ private:
         if (options_.reach.metric != error_metric::hessian) { return accuracy; }
         // Half of lambda R², where R = accuracy (4 scene² / lambda)^(1/4).
         return std::min(T(1), 2 * square(accuracy * accuracy * scene_radius_ / radius));
-    }
-
-    /// The same as the neighbours show it (math of leave-one-out: each neighbour is a test of the extrapolation).
-    [[nodiscard]] T learnt_bend(const item& one) const {
-        const record& r = one.record;
-        const frame<T> axes = r.axes();
-        const T irradiance = static_cast<T>(max_component(r.irradiance()));
-        std::vector<T> errors;
-        tree_.visit_within(r.position(), r.longest_radius(), [&](const item& other) {
-            if (other.index == one.index) { return; }
-            const vec3<T> n = other.record.normal();
-            const vec3<T> local = r.local(other.record.position(), axes);
-            const T t2 = r.distance2(local);
-            if (!(t2 < 1) || !(t2 > T(0.01)) || length2(n - axes.z) / 2 > limits_.turn) { return; }
-            errors.push_back(disagreement(r, other.record, r.extrapolate(local, axes.to_local(n))) / t2);
-        });
-        if (errors.empty() || !(irradiance > 0)) { return one.bend; }
-        const auto quartile = errors.begin() + static_cast<std::ptrdiff_t>((errors.size() * 3) / 4);
-        std::nth_element(errors.begin(), quartile, errors.end());
-        return *quartile / irradiance;
-    }
-
-    [[nodiscard]] static T disagreement(const record& a, const record& b, const S& extrapolated) {
-        const S difference = extrapolated + b.irradiance() * band_of<S>(-1);
-        const T high =
-            static_cast<T>(std::max(max_component(difference), max_component(S(difference * band_of<S>(-1)))));
-        if constexpr (Features.noise) {
-            const T noise2 = square(a.relative_noise() * static_cast<T>(max_component(a.irradiance()))) +
-                             square(b.relative_noise() * static_cast<T>(max_component(b.irradiance())));
-            return std::sqrt(std::max(T(0), high * high - noise2));
-        } else {
-            return high;
-        }
     }
 
     irradiance_cache_options options_;

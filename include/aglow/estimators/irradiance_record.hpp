@@ -190,6 +190,15 @@ public:
         return result;
     }
 
+    /// The same record with another irradiance and noise; slopes relative to irradiance are kept. Expects usable
+    /// numbers.
+    [[nodiscard]] irradiance_record with_irradiance(const S& irradiance, T noise) const {
+        irradiance_record result = *this;
+        result.irradiance_ = irradiance;
+        if constexpr (Features.noise) { result.noise_ = {noise, noise_.rays()}; }
+        return result;
+    }
+
 private:
     vec3<T> position_{};
     S irradiance_{};

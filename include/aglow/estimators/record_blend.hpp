@@ -110,6 +110,38 @@ template <typename T>
 
 }  // namespace detail
 
+namespace detail {
+
+/// A point as a record sees it, and whether the record may speak for it.
+template <std::floating_point T>
+struct record_view {
+    verdict judged{verdict::normal};
+    T t2{};            ///< squared distance over the reach's
+    T turn{};          ///< 1 - cos of the angle between the normals
+    vec3<T> local{};   ///< where the point lies
+    vec3<T> normal{};  ///< and its normal, along the record's axes
+};
+
+template <Spectrum S, std::floating_point T, record_features F>
+[[nodiscard]] record_view<T> look(const irradiance_record<S, T, F>& record, const vec3<T>& point, const vec3<T>& normal,
+                                  const lookup_limits<T>& limits) {
+    record_view<T> view;
+    const frame<T> axes = record.axes();
+    view.turn = length2(normal - axes.z) / 2;
+    // Written so that NaN is refused.
+    if (!(view.turn < limits.turn)) { return view; }
+    const T height = glm::dot(point - record.position(), normal + axes.z) / 2;
+    view.judged = verdict::plane;
+    if (!(std::abs(height) <= limits.plane * record.radius())) { return view; }
+    view.local = record.local(point, axes);
+    view.t2 = record.distance2(view.local);
+    view.judged = view.t2 < 1 ? verdict::used : verdict::distance;
+    view.normal = axes.to_local(normal);
+    return view;
+}
+
+}  // namespace detail
+
 /// Gathers the answer for one point. Add records in a fixed order, and the answer is the same to the last bit.
 template <Spectrum S, std::floating_point T>
 class record_blend {
@@ -121,19 +153,11 @@ public:
     /// `bend`: how much the record errs by at its own radius, relative to its irradiance.
     template <record_features F>
     detail::verdict add(const irradiance_record<S, T, F>& record, T bend) {
-        const vec3<T> way = point_ - record.position();
-        const frame<T> axes = record.axes();
-        const T turn = length2(normal_ - axes.z) / 2;
-        if (!(turn < limits_.turn)) { return detail::verdict::normal; }
-        if (std::abs(glm::dot(way, normal_ + axes.z)) > 2 * limits_.plane * record.radius()) {
-            return detail::verdict::plane;
-        }
-        const vec3<T> local = record.local(point_, axes);
-        const T t2 = record.distance2(local);
-        if (!(t2 < 1)) { return detail::verdict::distance; }
-        const T weight = detail::record_weight(limits_.metric, t2, turn / limits_.turn);
+        const detail::record_view<T> view = detail::look(record, point_, normal_, limits_);
+        if (view.judged != detail::verdict::used) { return view.judged; }
+        const T weight = detail::record_weight(limits_.metric, view.t2, view.turn / limits_.turn);
         if (!(weight > 0)) { return detail::verdict::distance; }
-        take(record, weight, t2 * bend, record.extrapolate(local, axes.to_local(normal_)));
+        take(record, weight, view.t2 * bend, record.extrapolate(view.local, view.normal));
         return detail::verdict::used;
     }
 

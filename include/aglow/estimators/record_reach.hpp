@@ -24,7 +24,7 @@ struct record_reach_options {
     error_metric metric{error_metric::hessian};
 
     /// Smaller is finer: twice as small makes about four times as many records.
-    double accuracy{0.1};
+    double accuracy{0.08};
 
     /// Bounds of the reach, in radii of the scene. The lower one keeps crevices from swallowing the fill pass.
     double minimum_radius{0.002};

@@ -1,0 +1,99 @@
+// What records learn from the records around them, once all are there.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <aglow/concepts/spectrum.hpp>
+#include <aglow/core/numbers.hpp>
+#include <aglow/core/vec.hpp>
+#include <aglow/estimators/irradiance_record.hpp>
+#include <aglow/estimators/record_blend.hpp>
+
+namespace aglow::detail {
+
+/// Squared standard error of the largest band; 0 where records do not keep it.
+template <Spectrum S, std::floating_point T, record_features F>
+[[nodiscard]] T variance_of(const irradiance_record<S, T, F>& r) {
+    if constexpr (F.noise) {
+        return square(r.relative_noise() * static_cast<T>(max_component(r.irradiance())));
+    } else {
+        return 0;
+    }
+}
+
+/// By how much the band that differs most does.
+template <Spectrum S, std::floating_point T>
+[[nodiscard]] T largest_difference(const S& a, const S& b) {
+    const S difference = a + b * band_of<S>(-1);
+    return static_cast<T>(std::max(max_component(difference), max_component(S(difference * band_of<S>(-1)))));
+}
+
+/// How much a record errs by at its own radius, relative to its irradiance, as its neighbours show: each is a test of
+/// the extrapolation. The upper quartile of |E_i + grad d - E_j| / d², the noise of both left out. `unknown` where
+/// there is no test. `tree` visits items with `.record`.
+template <typename Tree, Spectrum S, std::floating_point T, record_features F>
+[[nodiscard]] T learnt_bend(const Tree& tree, const irradiance_record<S, T, F>& r, T unknown,
+                            const lookup_limits<T>& limits) {
+    std::vector<T> errors;
+    tree.visit_within(r.position(), r.longest_radius(), [&](const auto& item) {
+        const irradiance_record<S, T, F>& other = item.record;
+        const record_view<T> view = look(r, other.position(), other.normal(), limits);
+        // Too near to tell curvature from noise; the record itself among them.
+        if (view.judged != verdict::used || !(view.t2 > T(0.01))) { return; }
+        const T high = largest_difference<S, T>(r.extrapolate(view.local, view.normal), other.irradiance());
+        errors.push_back(std::sqrt(std::max(T(0), high * high - variance_of(r) - variance_of(other))) / view.t2);
+    });
+    const T irradiance = static_cast<T>(max_component(r.irradiance()));
+    if (errors.empty() || !(irradiance > 0)) { return unknown; }
+    const auto quartile = errors.begin() + static_cast<std::ptrdiff_t>((errors.size() * 3) / 4);
+    std::nth_element(errors.begin(), quartile, errors.end());
+    return *quartile / irradiance;
+}
+
+/// The record with the irradiance that it and all records that reach it agree on: their first-order predictions weighed
+/// by one over the expected squared error, which is their common variance and the square of what each errs by. Their
+/// common one, since a record's own goes up and down with its irradiance, and would pull towards the dark. `tree`
+/// visits items with
+/// `.record` and `.index`, which is where in `bends` to look.
+template <typename Tree, Spectrum S, std::floating_point T, record_features F>
+[[nodiscard]] irradiance_record<S, T, F> smoothed(const Tree& tree, const irradiance_record<S, T, F>& r,
+                                                  std::span<const T> bends, const lookup_limits<T>& limits) {
+    struct prediction {
+        S irradiance;
+        T bias2;
+    };
+    std::vector<prediction> predictions;
+    T variance{};
+    const vec3<T> normal = r.normal();
+    tree.visit_covering(r.position(), [&](const auto& item) {
+        const irradiance_record<S, T, F>& other = item.record;
+        const record_view<T> view = look(other, r.position(), normal, limits);
+        if (view.judged != verdict::used) { return; }
+        variance += variance_of(other);
+        const T bias = bends[item.index] * view.t2 * static_cast<T>(max_component(other.irradiance()));
+        predictions.push_back({other.extrapolate(view.local, view.normal), bias * bias});
+    });
+    if (!(variance > 0)) { return r; }
+    variance /= static_cast<T>(predictions.size());
+    S sum{};
+    T weights{};
+    T weights2{};
+    for (const prediction& p : predictions) {
+        // What differs by more than noise explains (the difference of two has twice the variance) lies across an edge.
+        const T edge2 = std::max(T(0), square(largest_difference<S, T>(p.irradiance, r.irradiance())) - 8 * variance);
+        const T weight = variance / (variance + p.bias2 + edge2);
+        sum = sum + p.irradiance * static_cast<band_of<S>>(weight);
+        weights += weight;
+        weights2 += weight * weight;
+    }
+    const S mean = sum * static_cast<band_of<S>>(1 / weights);
+    const T most = static_cast<T>(max_component(mean));
+    return r.with_irradiance(mean, most > 0 ? std::sqrt(variance * weights2) / (weights * most) : T(0));
+}
+
+}  // namespace aglow::detail
