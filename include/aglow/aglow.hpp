@@ -35,6 +35,7 @@
 #include <aglow/containers/frozen_discs.hpp>
 #include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_build.hpp>
+#include <aglow/containers/kd_cloud.hpp>
 #include <aglow/containers/kd_crowd.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_median.hpp>

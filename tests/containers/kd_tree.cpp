@@ -50,9 +50,11 @@ std::vector<vec3<T>> queries(const std::vector<vec3<T>>& points, T scale = 1) {
     const auto u = [&] { return static_cast<T>(random() >> 8) / T(1 << 24); };
     std::vector<vec3<T>> all;
     for (int i = 0; i < 3; ++i) {
-        all.push_back(points[random() % points.size()]);
-        all.push_back(points[random() % points.size()] + vec3<T>{u(), u(), u()} * T(0.01) * scale);
-        all.push_back(vec3<T>{u(), u(), u()} * scale);
+        const vec3<T> offset{u(), u(), u()};
+        const vec3<T> near = points[random() % points.size()];
+        all.push_back(near);
+        all.push_back(near + offset * (T(0.01) * scale));
+        all.push_back(offset * scale);
     }
     all.push_back(vec3<T>(-30, 2, 5) * scale);
     all.push_back(vec3<T>(T(1e5), T(-1e5), T(1e5)) * scale);
@@ -319,7 +321,9 @@ TEST_CASE("kd_tree: positions that are not finite are left out and counted", "[k
     const auto tree = tree_of(points);
     CHECK(tree.size() == 996);
     CHECK(tree.dropped() == 4);
-    for (const std::uint32_t index : tree.order()) { CHECK((index != 3 && index != 7 && index != 500 && index != 999)); }
+    for (const std::uint32_t index : tree.order()) {
+        CHECK((index != 3 && index != 7 && index != 500 && index != 999));
+    }
     const std::vector<vec3<float>> bad(5, vec3<float>(std::numeric_limits<float>::quiet_NaN()));
     CHECK(tree_of(bad).empty());
     CHECK(tree_of(bad).dropped() == 5);

@@ -7,12 +7,12 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include <aglow/containers/kd_boxes.hpp>
+#include <aglow/containers/kd_cloud.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_median.hpp>
 #include <aglow/core/parallel.hpp>
@@ -20,33 +20,16 @@
 
 namespace aglow::detail {
 
-/// Positions by coordinate, with the original index of each, and room to read and write whole packs.
-template <typename T>
-struct kd_cloud {
-    std::array<std::unique_ptr<T[]>, 3> at;
-    std::unique_ptr<std::uint32_t[]> index;
-
-    explicit kd_cloud(std::size_t count) : index{std::make_unique_for_overwrite<std::uint32_t[]>(count + simd::lanes)} {
-        for (auto& numbers : at) { numbers = std::make_unique_for_overwrite<T[]>(count + simd::lanes); }
-    }
-    /// Makes what stands behind the first `count` sort last.
-    void close(std::size_t count) {
-        for (auto& numbers : at) {
-            std::fill_n(numbers.get() + count, std::size_t{simd::lanes}, std::numeric_limits<T>::max());
-        }
-    }
-};
-
 /// Points that lie together, in one of the two clouds. `first` is the first slot of a leaf.
 struct kd_range {
     std::uint32_t first, count;
     unsigned side;
 };
 
-/// Where a range is cut: `left` points go left, those below `pivot` and the first `ties` of those that equal it.
+/// Where a range is cut: `left` points go left, those below `pivot` and the first `ties` of the `tied` that equal it.
 template <typename T>
 struct kd_cut {
-    std::uint32_t axis, left, ties;
+    std::uint32_t axis, left, ties, tied;
     T pivot;
 };
 
@@ -55,6 +38,11 @@ class kd_builder {
     using T = typename P::scalar;
     using range = kd_range;
     using median = kd_median<P>;
+    struct side {
+        std::uint32_t axis;
+        T low, high;
+        [[nodiscard]] T width() const { return high - low; }
+    };
 
 public:
     kd_builder(kd_storage<T>& tree, kd_cloud<T>& cloud, kd_cloud<T>& spare) : tree_{tree}, clouds_{&cloud, &spare} {}
@@ -119,36 +107,39 @@ private:
     /// The cut of the widest side; where more than 1/16 of the points tie at the median, as points on a wall do, that
     /// of the next side with fewer ties.
     kd_cut<T> choose(range r, std::uint32_t left, median& find) const {
-        std::array<T, 3> extent{};
-        for (std::uint32_t a = 0; a < 3; ++a) { extent[a] = width(numbers(r, a), r.count); }
-        std::array<std::uint32_t, 3> axes{0, 1, 2};
-        std::stable_sort(axes.begin(), axes.end(), [&](auto a, auto b) { return extent[a] > extent[b]; });
-        kd_rank<T> best = find(numbers(r, axes[0]), r.count, left);
-        std::uint32_t axis = axes[0];
-        for (std::size_t i = 1; i < 3 && best.equal > r.count / 16 && extent[axes[i]] > extent[axes[0]] / 4; ++i) {
-            const kd_rank<T> other = find(numbers(r, axes[i]), r.count, left);
-            if (other.equal < best.equal) {
-                best = other;
-                axis = axes[i];
-            }
+        std::array<side, 3> sides{};
+        for (std::uint32_t a = 0; a < 3; ++a) { sides[a] = side_of(r, a); }
+        if (sides[0].width() < sides[1].width()) { std::swap(sides[0], sides[1]); }
+        if (sides[1].width() < sides[2].width()) { std::swap(sides[1], sides[2]); }
+        if (sides[0].width() < sides[1].width()) { std::swap(sides[0], sides[1]); }
+        kd_cut<T> best = cut_at(r, sides[0], left, find);
+        for (std::size_t i = 1; i < 3 && best.tied > r.count / 16 && sides[i].width() > sides[0].width() / 4; ++i) {
+            const kd_cut<T> other = cut_at(r, sides[i], left, find);
+            if (other.tied < best.tied) { best = other; }
         }
-        return {axis, left, left - best.less, best.value};
+        return best;
     }
 
     [[nodiscard]] const T* numbers(range r, std::uint32_t axis) const {
         return clouds_[r.side]->at[axis].get() + r.first;
     }
 
-    /// Largest minus smallest of more than sixteen numbers.
-    static T width(const T* numbers, std::uint32_t count) {
-        P low = P::load(numbers + (count - simd::lanes));
+    /// The side of a range, of more than sixteen points, along an axis.
+    side side_of(range r, std::uint32_t axis) const {
+        const T* at = numbers(r, axis);
+        P low = P::load(at + (r.count - simd::lanes));
         P high = low;
-        for (std::uint32_t i = 0; i + simd::lanes <= count; i += simd::lanes) {
-            const P v = P::load(numbers + i);
+        for (std::uint32_t i = 0; i + simd::lanes <= r.count; i += simd::lanes) {
+            const P v = P::load(at + i);
             low = P::min(low, v);
             high = P::max(high, v);
         }
-        return P::largest(high) - P::smallest(low);
+        return {axis, P::smallest(low), P::largest(high)};
+    }
+
+    kd_cut<T> cut_at(range r, side s, std::uint32_t left, median& find) const {
+        const kd_rank<T> rank = find(numbers(r, s.axis), r.count, left, s.low, s.high);
+        return {s.axis, left, left - rank.less, rank.equal, rank.value};
     }
 
     void partition(range r, kd_cut<T> cut) {
@@ -184,8 +175,8 @@ private:
 
     /// Moves the lanes of `mask` from place `i` of a cloud to place `to` of the other, writing nothing from `end` on.
     void move(const kd_cloud<T>& from, std::uint32_t i, std::uint32_t mask, std::uint32_t to, std::uint32_t end,
-              unsigned side) {
-        kd_cloud<T>& other = *clouds_[side ^ 1u];
+              unsigned from_side) {
+        kd_cloud<T>& other = *clouds_[from_side ^ 1u];
         if (to + simd::lanes <= end) {
             for (std::size_t a = 0; a < 3; ++a) { P::compress(&other.at[a][to], P::load(&from.at[a][i]), mask); }
             P::compress(&other.index[to], &from.index[i], mask);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <tuple>
 
 #include <aglow/containers/kd_select.hpp>
 #include <aglow/core/simd.hpp>
@@ -32,33 +33,35 @@ public:
         for (auto& room : rooms_) { room = std::make_unique_for_overwrite<T[]>(most + 2 * simd::lanes); }
     }
 
-    /// The k-th smallest, k from 1, of `count` numbers, of which only whole packs are read: what stands behind the last
-    /// in its pack must sort last.
-    kd_rank<T> operator()(const T* numbers, std::uint32_t count, std::uint32_t k) {
+    /// The k-th smallest, k from 1, of `count` numbers in [low, high], of which only whole packs are read: what stands
+    /// behind the last in its pack must sort last.
+    kd_rank<T> operator()(const T* numbers, std::uint32_t count, std::uint32_t k, T low, T high) {
         std::uint32_t less = 0;
-        for (unsigned side = 0; count > few; side ^= 1u) {
-            const auto [low, high] = bracket(numbers, count, k);
-            T* inside = rooms_[side].get();
+        for (unsigned round = 0; count > kd_few; ++round) {
+            const bool even = count <= sample_from && round < 6;
+            const auto [from, to] = even ? expected(count, k, low, high) : sampled(numbers, count, k);
+            T* inside = rooms_[round % 2].get();
             kd_bracket cut;
-            if (low < high) {
-                cut = cut_bracket<P>(numbers, count, low, high, inside);
+            if (from < to) {
+                cut = cut_bracket<P>(numbers, count, from, to, inside);
                 if (k <= cut.below) {
-                    cut = cut_bracket<P>(numbers, count, lowest, low, inside);
+                    cut = cut_bracket<P>(numbers, count, lowest, from, inside);
                 } else if (k > cut.below + cut.inside) {
-                    cut = cut_bracket<P>(numbers, count, high, highest, inside);
+                    cut = cut_bracket<P>(numbers, count, to, highest, inside);
                 }
             } else {
-                const kd_rank<T> tie = rank_of(numbers, count, low, less);
+                const kd_rank<T> tie = rank_of(numbers, count, from, less);
                 const std::uint32_t below = tie.less - less;
                 if (below < k && k <= below + tie.equal) { return tie; }
-                cut = k <= below ? cut_bracket<P>(numbers, count, lowest, low, inside)
-                                 : cut_above(numbers, count, low, inside);
+                cut = k <= below ? cut_bracket<P>(numbers, count, lowest, from, inside)
+                                 : cut_above(numbers, count, from, inside);
             }
             less += cut.below;
             k -= cut.below;
             count = cut.inside;
             numbers = inside;
             pad<P>(inside, count);
+            if (count > kd_few) { std::tie(low, high) = range_of<P>(numbers, count); }
         }
         return rank_of(numbers, count, kth_by_pairs<P>(numbers, count, k), less);
     }
@@ -66,12 +69,21 @@ public:
 private:
     static constexpr T lowest = std::numeric_limits<T>::lowest();
     static constexpr T highest = std::numeric_limits<T>::max();
-    static constexpr std::uint32_t few = 64;
     static constexpr std::uint32_t most_samples = 1024;
+    static constexpr std::uint32_t sample_from = 4096;
+
+    /// Two numbers between which the k-th is likely to lie if all are even in [low, high].
+    static std::array<T, 2> expected(std::uint32_t count, std::uint32_t k, T low, T high) {
+        const T n = static_cast<T>(count);
+        const T rank = static_cast<T>(k) - T(0.5);
+        const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 1;
+        const T step = (high - low) / n;
+        return {std::max(low, low + step * (rank - slack)), std::min(high, low + step * (rank + slack))};
+    }
 
     /// Two numbers of a sample between which the k-th is likely to lie.
-    std::array<T, 2> bracket(const T* numbers, std::uint32_t count, std::uint32_t k) {
-        const std::uint32_t samples = count >= 64 * most_samples ? most_samples : count >= 2048 ? 256 : 64;
+    std::array<T, 2> sampled(const T* numbers, std::uint32_t count, std::uint32_t k) {
+        const std::uint32_t samples = count >= 64 * most_samples ? most_samples : count >= 2048 ? 256 : kd_few;
         const std::uint32_t step = count / samples;
         for (std::uint32_t i = 0; i < samples; ++i) { sample_[i] = numbers[i * step + step / 2]; }
         const double share = static_cast<double>(k) / count;
@@ -79,13 +91,8 @@ private:
         const auto clamp = [&](double at) {
             return static_cast<std::uint32_t>(std::clamp(at, 1.0, static_cast<double>(samples)));
         };
-        const std::uint32_t low = clamp(samples * share - slack);
-        const std::uint32_t high = clamp(samples * share + slack);
-        if (samples <= few) {
-            return {kth_by_pairs<P>(sample_.data(), samples, low), kth_by_pairs<P>(sample_.data(), samples, high)};
-        }
         std::sort(sample_.begin(), sample_.begin() + samples);
-        return {sample_[low - 1], sample_[high - 1]};
+        return {sample_[clamp(samples * share - slack) - 1], sample_[clamp(samples * share + slack) - 1]};
     }
 
     static kd_rank<T> rank_of(const T* numbers, std::uint32_t count, T value, std::uint32_t less) {

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include <aglow/containers/kd_build.hpp>
+#include <aglow/containers/kd_cloud.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_nearest_one.hpp>
 #include <aglow/containers/kd_search.hpp>
@@ -186,17 +187,8 @@ template <std::ranges::random_access_range Items, typename Position, Executor E>
         if (count >= std::numeric_limits<std::uint32_t>::max() - 64) {
             throw std::length_error("aglow::kd_tree: more items than a 32-bit slot can number");
         }
-        const T farthest = std::sqrt(std::numeric_limits<T>::max()) / 4;
         detail::kd_cloud<T> cloud{count};
-        std::uint32_t kept = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const vec3<T> p = std::invoke(position, std::ranges::begin(items)[static_cast<std::ptrdiff_t>(i)]);
-            if (!is_finite(p.x) || !is_finite(p.y) || !is_finite(p.z) || max_abs(p) > farthest) { continue; }
-            cloud.at[0][kept] = p.x;
-            cloud.at[1][kept] = p.y;
-            cloud.at[2][kept] = p.z;
-            cloud.index[kept++] = i;
-        }
+        const auto kept = static_cast<std::uint32_t>(detail::take(cloud, items, position, run));
         dropped_ = count - kept;
         detail::kd_cloud<T> spare{kept};
         tree_.shape(kept);
