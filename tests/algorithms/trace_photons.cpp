@@ -215,6 +215,17 @@ TEST_CASE("trace_photons: the power of a few photons is right in the mean, howev
     CHECK(mean.agrees(1.0 / 6));
 }
 
+TEST_CASE("trace_photons: caustic light without a map of its own goes with the indirect light") {
+    const auto r = room();
+    const auto apart = trace_photons(r.scene, r.light, {.caustic = 20000, .indirect = 50000});
+    const auto joined = trace_photons(r.scene, r.light, {.indirect = 50000});
+    CHECK(joined.caustic.status == map_status::left_out);
+    const float caustic = total(apart.caustic).x;
+    const float indirect = total(apart.indirect).x;
+    CHECK(caustic > 0.03f * indirect);
+    CHECK(total(joined.indirect).x == Approx(caustic + indirect).epsilon(0.02));
+}
+
 TEST_CASE("trace_photons: only maps without a given number of paths ask the pilot") {
     const auto r = room();
     const auto maps = trace_photons(r.scene, r.light, {.direct = 2000, .indirect = 3000, .paths = {.indirect = 777}});

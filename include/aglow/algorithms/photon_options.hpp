@@ -22,7 +22,8 @@ struct photon_paths {
 /// How many photons, and how.
 struct photon_options {
     std::size_t direct{0};                   ///< photons wanted straight from the lights; 0 leaves the map out
-    std::size_t caustic{0};                  ///< wanted over specular surfaces only; 0 leaves the map out
+    std::size_t caustic{0};                  ///< wanted over specular surfaces only; 0 leaves the map out, and such
+                                             ///< photons are among the indirect ones
     std::size_t indirect{0};                 ///< wanted after a diffuse or glossy bounce; 0 leaves the map out
     std::size_t most_paths{16'000'000};      ///< paths emitted at the most, whatever is still wanted, the pilot apart
     std::size_t pilot_paths{8192};           ///< paths of the pilot that finds out how many are needed

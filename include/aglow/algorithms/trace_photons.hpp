@@ -60,6 +60,12 @@ public:
 private:
     static constexpr std::size_t index(photon_history h) { return static_cast<std::size_t>(h); }
 
+    /// Where photons of such a history go: caustic ones that have no map of their own are not lost.
+    [[nodiscard]] std::size_t map_of(photon_history h) const {
+        const bool homeless = h == photon_history::caustic && options_.caustic == 0;
+        return index(homeless ? photon_history::indirect : h);
+    }
+
     void plan() {
         wanted_ = {options_.direct, options_.caustic, options_.indirect};
         const lobe_set lobes = possible_lobes(scene_);
@@ -147,7 +153,8 @@ private:
         for (std::size_t kind = 0; kind < 3; ++kind) { into.paths[kind] += i < paths[kind] ? 1 : 0; }
         walk_photon(scene_, lights_, numbers, most_bounces_, into.ledger,
                     [&](const auto& hit, const vec3<T>& wi, const S& power, photon_history history) {
-                        if (i < paths[index(history)]) { store(hit, wi, power, into, index(history)); }
+                        const std::size_t kind = map_of(history);
+                        if (i < paths[kind]) { store(hit, wi, power, into, kind); }
                         const bool caustic = history != photon_history::indirect &&
                                              any(hit.lobes(), lobe_set::specular) &&
                                              i < paths[index(photon_history::caustic)];
