@@ -1,6 +1,7 @@
 #include <aglow/estimators/irradiance_gradients.hpp>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <aglow/core/random.hpp>
@@ -113,4 +114,23 @@ TEST_CASE("gradients: bands are strangers to each other") {
     CHECK(c.translation.x.x == g.translation.x);
     CHECK(c.rotation.y.x == g.rotation.y);
     CHECK(s.translation.y == vec3<float>{c.translation.y.z, c.translation.y.x, c.translation.y.y});
+}
+
+TEST_CASE("gradients: where samples were rejected the others stand in, as they do for irradiance") {
+    const hemisphere_shape shape{6, 18};
+    hemisphere_grid<double, double> all{shape};
+    hemisphere_grid<double, double> some{shape};
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (std::uint32_t k = 0; k < shape.sectors; ++k) {
+        for (std::uint32_t j = 0; j < shape.rings; ++j) {
+            const double l = k < 9 ? 1.0 : 0.0;
+            all.set(j, k, l, 1);
+            some.set(j, k, k >= 9 && k < 12 ? nan : l, 1);
+        }
+    }
+    const gradient_weights<double> weights{shape};
+    // The rejected ones were black: only the share of each sample changes.
+    const double share = some.irradiance() / all.irradiance();
+    CHECK(share == Approx(18.0 / 15));
+    CHECK(gradients(some, weights).rotation.x == Approx(gradients(all, weights).rotation.x * share));
 }

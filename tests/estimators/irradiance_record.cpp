@@ -294,3 +294,14 @@ TEST_CASE("is_usable: refuses whatever is not a number, and estimates from mostl
     e.rejected = 201;
     CHECK_FALSE(is_usable(e, reach));
 }
+
+TEST_CASE(
+    "irradiance_record: the mean incident direction comes back in the world's axes, and is the normal in the dark") {
+    using record = irradiance_record<vec3<float>, float, record_features{.incident = true}>;
+    auto e = estimate_at<vec3<float>, float>({0, 0, 0}, {0.3f, -0.5f, 0.7f}, {1, 1, 1});
+    const vec3<float> towards = glm::normalize(vec3<float>{0.5f, 0.1f, 0.4f});
+    e.incident = e.axes.to_local(towards) * 0.8f;
+    CHECK(glm::length(record{e, {.radius = 1}}.incident() - towards) < 1e-4f);
+    e.incident = {0, 0, 0};
+    CHECK(glm::length(record{e, {.radius = 1}}.incident() - e.axes.z) < 1e-4f);
+}

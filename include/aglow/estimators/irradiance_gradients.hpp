@@ -126,7 +126,10 @@ template <Spectrum S, std::floating_point T>
         sum.rotation.x = sum.rotation.x + s.rotation * -centre.y;
         sum.rotation.y = sum.rotation.y + s.rotation * centre.x;
     }
-    return sum;
+    if (grid.rejected() == 0) { return sum; }
+    const T scale = grid.sample_weight() * static_cast<T>(grid.shape().count()) / pi<T>;
+    const auto scaled = [scale](const tangent_vector<S>& v) { return tangent_vector<S>{v.x * scale, v.y * scale}; };
+    return {scaled(sum.translation), scaled(sum.rotation)};
 }
 
 }  // namespace aglow
