@@ -1,0 +1,97 @@
+#include <aglow/containers/kd_build.hpp>
+#include <aglow/containers/kd_search.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/catch.hpp"
+
+using namespace aglow;
+
+namespace {
+
+/// Points on three walls and in a cluster, some of them repeated, with ties along every axis.
+std::vector<vec3<float>> walls(std::size_t count) {
+    std::mt19937 random{77};
+    const auto u = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
+    std::vector<vec3<float>> points(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        points[i] = {u(), u(), u()};
+        if (i % 4 != 0) { points[i][static_cast<int>(i % 3)] = 0.25f; }
+        if (i % 7 == 6) { points[i] = points[i / 2]; }
+    }
+    return points;
+}
+
+template <typename P>
+detail::kd_storage<float> tree_of(const std::vector<vec3<float>>& points) {
+    detail::kd_storage<float> tree;
+    detail::kd_cloud<float> cloud{points.size()};
+    detail::kd_cloud<float> spare{points.size()};
+    const auto same = [](const vec3<float>& p) { return p; };
+    tree.shape(static_cast<std::uint32_t>(detail::take(cloud, points, same, in_sequence{})));
+    detail::kd_builder<P>{tree, cloud, spare}.build(in_sequence{});
+    return tree;
+}
+
+struct found {
+    std::vector<std::uint32_t> slots;
+    float farthest;
+    bool operator==(const found&) const = default;
+};
+
+template <typename P>
+found search(const detail::kd_storage<float>& tree, const vec3<float>& point, std::uint32_t k) {
+    detail::kd_probe<float> probe;
+    probe.point = point;
+    probe.enough = k;
+    detail::go_home<P>(tree, probe);
+    detail::start(tree, probe);
+    detail::kd_candidates<float> list;
+    list.reserve(2 * k + 1024);
+    kd_accept_all all;
+    const float guess = detail::guess_radius2<P>(tree, probe, k);
+    const float farthest = detail::find_nearest<P>(tree, probe, k, guess, 1e30f, list, all);
+    return {{list.slots.begin(), list.slots.begin() + list.count}, farthest};
+}
+
+}  // namespace
+
+TEST_CASE("kd_build: the plain pack and the best build the same tree and find the same") {
+    using best = simd::best<float>;
+    using plain = simd::plain<float>;
+    for (const std::size_t count : {1u, 33u, 512u, 5000u, 70'001u}) {
+        const auto points = walls(count);
+        const auto one = tree_of<plain>(points);
+        const auto other = tree_of<best>(points);
+        REQUIRE(one.order == other.order);
+        for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / 50) {
+            for (const std::uint32_t k : {1u, 30u, 300u}) {
+                if (k > count) { continue; }
+                const vec3<float> q = points[i] + vec3<float>(0, 0.001f, 0);
+                REQUIRE(search<plain>(one, q, k) == search<best>(other, q, k));
+            }
+        }
+    }
+}
+
+TEST_CASE("kd_build: boxes are tight and every leaf but the last is full") {
+    const auto points = walls(20'000);
+    const auto tree = tree_of<simd::best<float>>(points);
+    for (int level = 1; level <= tree.height; ++level) {
+        const auto below = static_cast<std::uint32_t>(detail::kd_capacity(level - 1));
+        for (std::uint32_t child = 0; child * below < tree.size; ++child) {
+            bounds<float> box;
+            for (std::uint32_t s = child * below; s < std::min(tree.size, (child + 1) * below); ++s) {
+                box.add(tree.position(s));
+            }
+            const detail::kd_node<float>& node = tree.node(level, child / detail::kd_fan);
+            const std::uint32_t i = child % detail::kd_fan;
+            REQUIRE(box.low == vec3<float>(node.low_x[i], node.low_y[i], node.low_z[i]));
+            REQUIRE(box.high == vec3<float>(node.high_x[i], node.high_y[i], node.high_z[i]));
+        }
+    }
+    CHECK(tree.leaves.size() == 20'000 / detail::kd_leaf_size);
+}
