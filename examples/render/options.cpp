@@ -3,6 +3,7 @@
 #include <charconv>
 #include <iostream>
 #include <map>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 
@@ -46,6 +47,18 @@ void read_size(const std::string& text, render_options& options) {
     options.height = pixels(text, cross == std::string::npos ? "" : text.substr(cross + 1));
 }
 
+/// Refuses what is not a number from `low` to `high`, NaN too.
+CLI::Validator between(double low, double high) {
+    const auto refuse = [low, high](std::string& text) -> std::string {
+        double x = 0;
+        if (CLI::detail::lexical_cast(text, x) && x >= low && x <= high) { return {}; }
+        std::ostringstream why;
+        why << text << " is not a number from " << low << " to " << high;
+        return why.str();
+    };
+    return {refuse, "NUMBER"};
+}
+
 /// The first line of what CLI11 complains of.
 std::string one_line(std::string text) {
     const std::size_t end = text.find('\n');
@@ -70,24 +83,24 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     app.add_option("SCENE", o.scene, "a built-in scene (see --list) or a model file (OBJ, glTF 2, PLY)");
     app.add_option("--method", how, "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
     app.add_option("--output", o.output, "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
-    app.add_option("--spp", o.samples, "samples per pixel [16]")->check(CLI::Range(1u, 1u << 24));
+    app.add_option("--spp", o.samples, "samples per pixel [16]")->check(between(1, 1 << 24));
     app.add_option("--time", o.seconds, "seconds in all: as many samples as fit, instead of --spp")
-        ->check(CLI::Range(0.01, 1e7));
+        ->check(between(0.01, 1e7));
     app.add_option("--threads", o.threads, "threads; the picture does not depend on them [all cores]")
-        ->check(CLI::Range(1u, 1024u));
-    app.add_option("--seed", o.seed, "another seed, other noise [0]");
+        ->check(between(1, 1024));
+    app.add_option("--seed", o.seed, "another seed, other noise [0]")->check(between(0, 0x1p64));
     app.add_option("--size", size, "width x height in pixels [256x256]");
-    app.add_option("--caustic-photons", o.caustic_photons, "photons wanted in the caustic map");
-    app.add_option("--indirect-photons", o.indirect_photons, "photons wanted in the indirect map");
-    app.add_option("--direct-photons", o.direct_photons, "photons wanted in the direct map");
-    app.add_option("--estimate", o.photons_per_estimate, "photons per estimate")->check(CLI::Range(2u, 100000u));
+    app.add_option("--caustic-photons", o.caustic_photons, "photons wanted in the caustic map")->check(between(0, 4e9));
+    app.add_option("--indirect-photons", o.indirect_photons, "photons wanted in the indirect map")
+        ->check(between(0, 4e9));
+    app.add_option("--direct-photons", o.direct_photons, "photons wanted in the direct map")->check(between(0, 4e9));
+    app.add_option("--estimate", o.photons_per_estimate, "photons per estimate")->check(between(2, 100000));
     app.add_option("--gather-rays", o.gather_rays, "rays of each final gather or cache record")
-        ->check(CLI::Range(1u, 1u << 20));
-    app.add_option("--accuracy", o.accuracy, "of the irradiance cache: smaller is finer")
-        ->check(CLI::Range(1e-4, 10.0));
+        ->check(between(1, 1 << 20));
+    app.add_option("--accuracy", o.accuracy, "of the irradiance cache: smaller is finer")->check(between(1e-4, 10.0));
     app.add_option("--view", show, "beauty, direct, indirect, caustic, records or photons [beauty]");
     app.add_flag("--layers", o.layers, "also write direct, indirect and caustic light as layers");
-    app.add_option("--exposure", o.exposure, "of the PNG: a factor [1]")->check(CLI::Range(1e-6f, 1e6f));
+    app.add_option("--exposure", o.exposure, "of the PNG: a factor [1]")->check(between(1e-6, 1e6));
     app.add_flag("--list", o.list, "list the built-in scenes");
     try {
         app.parse(count, words);

@@ -1,0 +1,99 @@
+#include "render/options.hpp"
+
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "render/usage_error.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+host::render_options read(std::initializer_list<const char*> words) {
+    std::vector<const char*> line{"render"};
+    line.insert(line.end(), words);
+    const auto options = host::read_options(static_cast<int>(line.size()), line.data());
+    REQUIRE(options);
+    return *options;
+}
+
+/// What is said of a wrong line; empty where nothing is.
+std::string complaint(std::initializer_list<const char*> words) {
+    try {
+        static_cast<void>(read(words));
+    } catch (const host::usage_error& e) { return e.what(); }
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("options: a whole line is understood") {
+    const auto o = read({"cornell-glass",
+                         "--method",
+                         "photon-map",
+                         "--output",
+                         "x/y.exr",
+                         "--spp",
+                         "64",
+                         "--threads",
+                         "3",
+                         "--seed",
+                         "7",
+                         "--size",
+                         "640x480",
+                         "--caustic-photons",
+                         "1000",
+                         "--indirect-photons",
+                         "0",
+                         "--estimate",
+                         "80",
+                         "--view",
+                         "caustic",
+                         "--layers"});
+    CHECK(o.scene == "cornell-glass");
+    CHECK(o.how == host::method::photon_map);
+    CHECK(o.output == "x/y.exr");
+    CHECK(o.samples == 64);
+    CHECK(o.threads == 3);
+    CHECK(o.seed == 7);
+    CHECK((o.width == 640 && o.height == 480));
+    CHECK(o.caustic_photons == 1000);
+    CHECK(o.indirect_photons == 0);
+    CHECK_FALSE(o.direct_photons);
+    CHECK(o.photons_per_estimate == 80);
+    CHECK(o.show == host::view::caustic);
+    CHECK(o.layers);
+}
+
+TEST_CASE("options: a picture is named after its scene, a model's without its folder") {
+    CHECK(read({"furnace"}).output == "furnace.exr");
+    CHECK(read({"models/bunny.ply"}).output == "bunny.exr");
+}
+
+TEST_CASE("options: every wrong wish is one line that names it") {
+    const std::vector<std::pair<std::string, std::string>> wrong{
+        {complaint({"furnace", "--method", "magic"}), "magic"},
+        {complaint({"furnace", "--view", "inside"}), "inside"},
+        {complaint({"furnace", "--spp", "0"}), "--spp"},
+        {complaint({"furnace", "--spp", "-4"}), "--spp"},
+        {complaint({"furnace", "--spp", "many"}), "--spp"},
+        {complaint({"furnace", "--time", "nan"}), "--time"},
+        {complaint({"furnace", "--threads", "0"}), "--threads"},
+        {complaint({"furnace", "--size", "640"}), "640"},
+        {complaint({"furnace", "--size", "0x10"}), "0x10"},
+        {complaint({"furnace", "--size", "12x10px"}), "12x10px"},
+        {complaint({"furnace", "--size", "99999x2"}), "99999x2"},
+        {complaint({"furnace", "--estimate", "1"}), "--estimate"},
+        {complaint({"furnace", "--output", "x.jpg"}), "x.jpg"},
+        {complaint({"furnace", "--caustic-photons", "-1"}), "-1"},
+        {complaint({"furnace", "--brightness", "2"}), "--brightness"},
+        {complaint({"furnace", "another"}), "another"},
+        {complaint({"furnace", "--spp"}), "--spp"},
+        {complaint({}), "--list"},
+    };
+    for (const auto& [said, name] : wrong) {
+        INFO(name << ": " << said);
+        CHECK(said.find(name) != std::string::npos);
+        CHECK(said.find('\n') == std::string::npos);
+    }
+}
