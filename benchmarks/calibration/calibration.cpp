@@ -15,9 +15,9 @@ namespace {
 
 /// How often what was stated was true.
 struct tally {
-    aglow::running_mean all, feature, plain, hard, dark;  ///< coverage of the error bars, by kind of pixel
-    aglow::running_mean sharpness;                        ///< mean bar over mean error
-    aglow::running_mean bias, mean_error, quantile;       ///< coverage of the picture's statements
+    aglow::running_mean all, feature, hard, caustic, dark;  ///< coverage of the error bars, by kind of pixel
+    aglow::running_mean sharpness;                          ///< mean bar over mean error
+    aglow::running_mean bias, mean_error, quantile;         ///< coverage of the picture's statements
     std::size_t certified{0};
     std::size_t falsely{0};
 };
@@ -61,19 +61,16 @@ true_errors errors_of(const known_scene& scene, const judged_picture& picture, d
 void count_bars(const known_scene& scene, const judged_picture& picture, const true_errors& truth,
                 const aglow::audit_result& result, tally& into) {
     const std::vector<double> bars = aglow::error_bars(picture.audited(), result);
-    std::vector<double> grays;
-    for (std::size_t i = 0; i < bars.size(); ++i) { grays.push_back(picture.gray(i)); }
-    const auto tenth = grays.begin() + static_cast<std::ptrdiff_t>(grays.size() / 10);
-    std::nth_element(grays.begin(), tenth, grays.end());
     aglow::running_mean width;
     aglow::running_mean error;
     const auto add = [](aglow::running_mean& to, bool held) { to.add(held ? 1 : 0); };
     for (std::size_t i = 0; i < bars.size(); ++i) {
         const bool held = truth.absolute[i] <= bars[i];
         add(into.all, held);
-        add(scene.feature()[i] ? into.feature : into.plain, held);
-        if (picture.classes[i] >= 2) { add(into.hard, held); }
-        if (picture.gray(i) <= *tenth) { add(into.dark, held); }
+        if (scene.feature()[i]) { add(into.feature, held); }
+        if (picture.hard[i]) { add(into.hard, held); }
+        if (scene.caustic()[i]) { add(into.caustic, held); }
+        if (picture.classes[i] == judged_picture::dark_class) { add(into.dark, held); }
         width.add(bars[i]);
         error.add(truth.absolute[i]);
     }
@@ -133,14 +130,14 @@ void controls(const known_scene& scene) {
 }
 
 void print_head() {
-    std::printf("%-16s %-17s %6s %6s %6s %6s %6s %7s | %6s %6s %6s %7s\n", "scene", "method", "all", "featur", "plain",
-                "hard", "dark", "bar/err", "bias", "mean", "q95", "false");
+    std::printf("%-16s %-17s %6s %6s %6s %6s %6s %7s | %6s %6s %6s %7s\n", "scene", "method", "all", "featur", "hard",
+                "caust", "dark", "bar/err", "bias", "mean", "q95", "false");
 }
 
 void print(const known_scene& scene, const char* method, const tally& t) {
     const auto percent = [](const aglow::running_mean& m) { return m.count() == 0 ? 0.0 : 100 * m.mean(); };
     std::printf("%-16s %-17s %6.1f %6.1f %6.1f %6.1f %6.1f %7.2f | %6.1f %6.1f %6.1f %3zu/%zu\n", scene.name().c_str(),
-                method, percent(t.all), percent(t.feature), percent(t.plain), percent(t.hard), percent(t.dark),
+                method, percent(t.all), percent(t.feature), percent(t.hard), percent(t.caustic), percent(t.dark),
                 t.sharpness.mean(), percent(t.bias), percent(t.mean_error), percent(t.quantile), t.falsely,
                 scene.how().certificates);
     std::fflush(stdout);

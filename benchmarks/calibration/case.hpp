@@ -53,6 +53,7 @@ public:
             pool_[b] = values_of(batch);
         }
         find_features();
+        find_caustics();
     }
 
     [[nodiscard]] const std::string& name() const { return name_; }
@@ -60,6 +61,8 @@ public:
     [[nodiscard]] const host::scene<float>& scene() const { return scene_; }
     [[nodiscard]] const std::vector<float>& truth() const { return truth_; }
     [[nodiscard]] const std::vector<char>& feature() const { return feature_; }
+    /// Pixels that owe a tenth of their light or more to caustics.
+    [[nodiscard]] const std::vector<char>& caustic() const { return caustic_; }
 
     /// An unbiased look at a pixel: one batch of the pool, chosen by the seed.
     [[nodiscard]] rgb look(std::size_t pixel, std::uint64_t seed) const {
@@ -101,20 +104,44 @@ private:
         }
     }
 
+    void find_caustics() {
+        const auto maps = aglow::trace_photons(scene_, scene_.lights(), {.caustic = 200'000}, aglow::own_threads{});
+        const aglow::photon_map<rgb, float> nothing;
+        const std::vector<float> with = seen_through(maps.caustic);
+        const std::vector<float> without = seen_through(nothing);
+        for (std::size_t i = 0; i < with.size(); i += 3) {
+            const float light = truth_[i] + truth_[i + 1] + truth_[i + 2];
+            const float caustic = with[i] + with[i + 1] + with[i + 2] - without[i] - without[i + 1] - without[i + 2];
+            caustic_.push_back(caustic > 0.1f * light);
+        }
+    }
+
+    /// A picture of lamps and of what one photon map lights.
+    [[nodiscard]] std::vector<float> seen_through(const aglow::photon_map<rgb, float>& map) const {
+        const aglow::layered_integrator integrator{scene_, scene_.lights(), aglow::map_layer<rgb, float>{map}};
+        aglow::film<rgb> film{effort_.pixels, effort_.pixels};
+        film.expose(eye(), integrator, {.samples = 16, .seed = 3}, aglow::own_threads{});
+        return values_of(film);
+    }
+
     std::string name_;
     effort effort_;
     host::scene<float> scene_;
     std::vector<float> truth_;
     std::vector<std::vector<float>> pool_;
     std::vector<char> feature_;
+    std::vector<char> caustic_;
 };
 
 /// A picture by some integrator, with its guesses and the classes that an audit gives error bars for.
 struct judged_picture {
     std::vector<float> values{};
     std::vector<float> guess{};
-    std::vector<std::uint32_t> classes{};  ///< feature + 2 * hard
+    std::vector<std::uint32_t> classes{};  ///< feature + 2 * hard, or dark
+    std::vector<char> hard{};
     std::size_t pixels{0};
+
+    static constexpr std::uint32_t dark_class = 4;
 
     [[nodiscard]] aglow::audited_picture<float> audited() const {
         return {.image = {values, pixels, pixels, 3}, .guess = guess, .classes = classes};
@@ -135,9 +162,16 @@ struct judged_picture {
     std::vector<double> sorted = hardness;
     const auto quarter = sorted.begin() + static_cast<std::ptrdiff_t>(3 * count / 4);
     std::nth_element(sorted.begin(), quarter, sorted.end());
+    std::vector<double> grays;
+    for (std::size_t i = 0; i < count; ++i) { grays.push_back(result.gray(i)); }
+    const auto tenth = grays.begin() + static_cast<std::ptrdiff_t>(count / 10);
+    std::nth_element(grays.begin(), tenth, grays.end());
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t hard = hardness[i] > *quarter ? 2 : 0;
-        result.classes.push_back(hard + static_cast<std::uint32_t>(scene.feature()[i]));
+        const bool dark = result.gray(i) <= *tenth;
+        result.classes.push_back(dark ? judged_picture::dark_class
+                                      : hard + static_cast<std::uint32_t>(scene.feature()[i]));
+        result.hard.push_back(hard > 0);
     }
     return result;
 }

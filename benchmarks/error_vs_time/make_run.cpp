@@ -1,0 +1,225 @@
+#include "error_vs_time/make_run.hpp"
+
+#include <time.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/path_trace.hpp>
+#include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/algorithms/pixel_probe.hpp>
+#include <aglow/algorithms/progressive.hpp>
+#include <aglow/report/audit.hpp>
+
+namespace error_vs_time {
+
+namespace {
+
+double cpu_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Forgets the largest memory use so far, where the system lets one.
+void reset_peak() { std::ofstream{"/proc/self/clear_refs"} << '5'; }
+
+double peak_bytes() {
+    std::ifstream status{"/proc/self/status"};
+    for (std::string line; std::getline(status, line);) {
+        if (line.rfind("VmHWM:", 0) == 0) { return 1024 * std::stod(line.substr(6)); }
+    }
+    return 0;
+}
+
+std::vector<float> values_of(const aglow::film<rgb>& film) {
+    std::vector<float> values;
+    values.reserve(3 * film.width() * film.height());
+    for (std::size_t y = 0; y < film.height(); ++y) {
+        for (std::size_t x = 0; x < film.width(); ++x) {
+            const rgb p = film.radiance(x, y);
+            values.insert(values.end(), {p.x, p.y, p.z});
+        }
+    }
+    return values;
+}
+
+/// Calls `use` with the scene, as a diffuse one where it is.
+template <typename Use>
+auto with_scene(const host::scene_description<float>& d, const Use& use) {
+    const host::scene<float> any{d};
+    if (any.possible_lobes() == aglow::lobe_set::diffuse_reflection) { return use(host::diffuse_scene<float>{d}); }
+    return use(any);
+}
+
+/// One run in the making.
+template <typename World>
+class maker {
+public:
+    maker(const World& scene, const budget& b, std::uint64_t seed, std::size_t size)
+        : scene_{scene}, budget_{b}, seed_{seed}, size_{size}, film_{size, size} {}
+
+    made_run make(technique how) {
+        reset_peak();
+        const auto wall = std::chrono::steady_clock::now();
+        start_ = cpu_seconds();
+        switch (how) {
+            case technique::path: expose(aglow::path_tracer{scene_, scene_.lights()}); break;
+            case technique::irradiance_cache: irradiance_cache(); break;
+            case technique::photon_map: photon_map(); break;
+            case technique::final_gather: final_gather(); break;
+            case technique::gather_cache: gather_cache(); break;
+            case technique::progressive: progressive(); break;
+        }
+        run_note& note = run_.note;
+        note.cpu_seconds = cpu_seconds() - start_;
+        note.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+        note.peak_bytes = peak_bytes();
+        note.settings = budget_.told();
+        note.seed = seed_;
+        run_.values = values_of(film_);
+        for (std::size_t i = 0; i < size_ * size_; ++i) { run_.guess.push_back(film_.error(i % size_, i / size_)); }
+        return std::move(run_);
+    }
+
+private:
+    [[nodiscard]] auto eye() const {
+        return [this](const aglow::vec2<float>& film) { return scene_.view().through(film, size_, size_); };
+    }
+    [[nodiscard]] aglow::photon_options photons() const {
+        return {
+            .direct = budget_.indirect / 5, .caustic = budget_.caustic, .indirect = budget_.indirect, .seed = seed_};
+    }
+    [[nodiscard]] aglow::caching_options caching() const {
+        aglow::caching_options options;
+        options.cache.reach.accuracy = budget_.accuracy;
+        options.fill.rays = budget_.rays;
+        options.fill.seed = seed_;
+        options.view = {.width = size_, .height = size_, .seed = seed_};
+        return options;
+    }
+
+    template <typename Integrator>
+    void expose(const Integrator& integrator) {
+        const double before = cpu_seconds();
+        run_.note.phases.emplace_back("prepare", before - start_);
+        film_.expose(eye(), integrator, {.samples = budget_.samples, .seed = seed_});
+        run_.note.phases.emplace_back("shade", cpu_seconds() - before);
+        count("samples", static_cast<double>(size_ * size_) * budget_.samples);
+    }
+    void count(const char* what, double number) { run_.note.counts.emplace_back(what, number); }
+    void count(const aglow::photon_maps<rgb, float>& maps) {
+        count("photons", static_cast<double>(maps.size()));
+        count("light paths", static_cast<double>(maps.ledger.emitted));
+    }
+    void count(const aglow::fill_result& filled) {
+        count("records", static_cast<double>(filled.records));
+        count("gather rays", static_cast<double>(filled.rays));
+    }
+
+    void irradiance_cache() {
+        const aglow::irradiance_caching picture{scene_, scene_.lights(), scene_.bounds(), eye(), caching()};
+        count(picture.filled());
+        expose(picture);
+    }
+    void photon_map() {
+        aglow::photon_options wanted = photons();
+        wanted.direct = 0;
+        const aglow::photon_mapping picture{scene_, scene_.lights(), {.photons = wanted}};
+        count(picture.maps());
+        expose(picture);
+    }
+    void final_gather() {
+        const aglow::final_gathering picture{
+            scene_,
+            scene_.lights(),
+            {.photons = photons(), .irradiance = {.every = budget_.every, .seed = seed_}, .rays = budget_.rays}};
+        count(picture.maps());
+        expose(picture);
+    }
+    void gather_cache() {
+        aglow::gather_caching_options options;
+        options.photons = photons();
+        options.irradiance = {.every = budget_.every, .seed = seed_};
+        options.caching = caching();
+        const aglow::gather_caching picture{scene_, scene_.lights(), scene_.bounds(), eye(), options};
+        count(picture.maps());
+        count(picture.filled());
+        expose(picture);
+    }
+    void progressive() {
+        aglow::progressive_photon_mapping passes{
+            scene_, scene_.lights(), {.caustic = budget_.caustic, .indirect = budget_.indirect, .seed = seed_}};
+        for (std::uint32_t i = 0; i < budget_.samples; ++i) { passes.pass(film_, eye()); }
+        run_.note.phases.emplace_back("shade", cpu_seconds() - start_);
+        count("passes", budget_.samples);
+    }
+
+    const World& scene_;
+    const budget& budget_;
+    std::uint64_t seed_;
+    std::size_t size_;
+    aglow::film<rgb> film_;
+    double start_{0};
+    made_run run_{};
+};
+
+}  // namespace
+
+made_run make_run(const host::scene_description<float>& scene, const ladder& method, std::size_t step,
+                  std::uint64_t seed, std::size_t size) {
+    made_run run = with_scene(scene, [&](const auto& world) {
+        return maker<std::remove_cvref_t<decltype(world)>>{world, method.steps[step], seed, size}.make(method.how);
+    });
+    run.note.scene = scene.name;
+    run.note.method = method.name;
+    run.note.budget = step;
+    return run;
+}
+
+reference_halves path_traced(const host::scene_description<float>& scene, std::uint32_t samples, std::size_t size) {
+    return with_scene(scene, [&](const auto& world) {
+        const aglow::path_tracer tracer{world, world.lights()};
+        const auto half = [&](std::uint64_t seed) {
+            aglow::film<rgb> film{size, size};
+            film.expose([&](const aglow::vec2<float>& p) { return world.view().through(p, size, size); }, tracer,
+                        {.samples = samples, .seed = seed}, aglow::own_threads{});
+            return values_of(film);
+        };
+        return reference_halves{half(90001), half(90002)};
+    });
+}
+
+audit_note audit_run(const host::scene_description<float>& scene, const made_run& run, double target,
+                     const std::vector<float>& truth, std::size_t size) {
+    return with_scene(scene, [&](const auto& world) {
+        const auto eye = [&](const aglow::vec2<float>& p) { return world.view().through(p, size, size); };
+        const aglow::path_tracer tracer{world, world.lights()};
+        const aglow::audited_picture<float> picture{.image = {run.values, size, size, 3}, .guess = run.guess};
+        const double before = cpu_seconds();
+        const aglow::audit_result stated =
+            aglow::audit(picture, aglow::pixel_probe{eye, tracer, size}, {.target = target, .seed = run.note.seed});
+        audit_note note{.scene = run.note.scene, .method = run.note.method};
+        note.seconds = cpu_seconds() - before;
+        note.render_seconds = run.note.cpu_seconds;
+        constexpr const char* words[] = {"certified", "not certified", "inconclusive"};
+        note.status = words[static_cast<int>(stated.status)];
+        for (const std::string& reason : stated.reasons) {
+            note.statement += (note.statement.empty() ? "" : "; ") + reason;
+        }
+        note.target = target;
+        note.bound = stated.mean_error_bound;
+        note.bias_low = stated.energy_bias.low;
+        note.bias_high = stated.energy_bias.high;
+        const aglow::image_error known = aglow::compare(aglow::image_view<float>{run.values, size, size, 3},
+                                                        aglow::image_view<float>{truth, size, size, 3});
+        note.true_error = known.mape;
+        note.true_bias = known.energy_bias;
+        return note;
+    });
+}
+
+}  // namespace error_vs_time
