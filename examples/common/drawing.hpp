@@ -9,7 +9,9 @@
 #include <span>
 #include <string_view>
 
+#include <aglow/concepts/spectrum.hpp>
 #include <aglow/core/numbers.hpp>
+#include <aglow/core/vec.hpp>
 
 #include "common/camera.hpp"
 #include "common/picture.hpp"
