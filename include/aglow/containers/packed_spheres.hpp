@@ -32,6 +32,8 @@ public:
     explicit packed_spheres(std::vector<stored_sphere<T>> spheres) {
         std::vector<bounds<T>> boxes;
         for (const std::span<stored_sphere<T>> alike : by_size(spheres)) { roots_.push_back(plant(alike, boxes)); }
+        blocks_.shrink_to_fit();
+        nodes_.shrink_to_fit();
         directory_ =
             cell_directory<T>{boxes, [&](std::uint32_t i, const bounds<T>& cell) { return meets(blocks_[i], cell); }};
     }
@@ -46,8 +48,8 @@ public:
     void search(const covering_question<T>& question, sphere_hits<T, D>& found) const {
         if (directory_.longest() > crowded) { return search_trees(question, found); }
         directory_.visit_near(question.point, [&](const std::uint32_t* numbers, std::uint32_t count) {
-            found.reserve(count * lanes);
-            for (std::uint32_t i = 0; i < count; ++i) { ask(blocks_[numbers[i]], question, found); }
+            ask(
+                blocks_.data(), count, [numbers](std::uint32_t i) { return numbers[i]; }, question, found);
         });
     }
 
@@ -100,8 +102,13 @@ private:
             const node& at = nodes_[waiting[--count]];
             std::uint32_t near = boxes_near(at, asked);
             if (at.of_blocks) {
-                found.reserve(lanes * lanes);
-                for (; near != 0; near &= near - 1) { ask(blocks_[at.first + first_lane(near)], question, found); }
+                const std::uint32_t first = at.first;
+                const auto next = [&](std::uint32_t) {
+                    const std::uint32_t lane = first_lane(near);
+                    near &= near - 1;
+                    return first + lane;
+                };
+                ask(blocks_.data(), static_cast<std::uint32_t>(std::popcount(near)), next, question, found);
             } else {
                 for (; near != 0; near &= near - 1) { waiting[count++] = at.first + first_lane(near); }
             }

@@ -84,12 +84,23 @@ public:
         ++count_;
     }
 
-    /// Appends the lanes in `mask`. Expects room for them.
-    void append(const std::uint32_t* items, const simd::best<T>& distances2, std::uint32_t mask) {
-        simd::best<T>::compress(items_ + count_, items, mask);
-        if constexpr (WithDistances) { simd::best<T>::compress(distances2_ + count_, distances2, mask); }
-        count_ += static_cast<std::size_t>(std::popcount(mask));
-    }
+    /// Where the next find goes.
+    struct place {
+        std::uint32_t* item;
+        T* distance2;
+
+        /// Appends the lanes in `mask`. Expects room for them.
+        void append(const std::uint32_t* items, const simd::best<T>& distances2, std::uint32_t mask) {
+            simd::best<T>::compress(item, items, mask);
+            item += std::popcount(mask);
+            if constexpr (WithDistances) {
+                simd::best<T>::compress(distance2, distances2, mask);
+                distance2 += std::popcount(mask);
+            }
+        }
+    };
+    [[nodiscard]] place end() { return {items_ + count_, distances2_ + (WithDistances ? count_ : 0)}; }
+    void end_at(const place& last) { count_ = static_cast<std::size_t>(last.item - items_); }
 
     /// Drops the finds for which `wanted(item, distance2)` is false.
     template <typename Wanted>
@@ -115,7 +126,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t few = 256;
+    static constexpr std::size_t few = 1024;
     static constexpr std::size_t lanes = simd::lanes;
 
     void sort() {
@@ -195,15 +206,23 @@ struct within_question {
     }
 };
 
-/// Adds the answers in a block of sixteen to `found`, which has room for them.
-template <typename T, typename Question, bool D>
-void ask(const sphere_block<T, simd::lanes>& block, const Question& question, sphere_hits<T, D>& found) {
+/// Adds the answers in blocks of sixteen, `blocks[number(i)]` for i below `count`, to `found`.
+template <typename Block, typename Number, typename Question, typename T, bool D>
+void ask(const Block* blocks, std::uint32_t count, const Number& number, const Question& question,
+         sphere_hits<T, D>& found) {
     using pack = simd::best<T>;
-    const pack distances2 = pack::length2(pack::sub(pack::load(block.x), pack::all(question.point.x)),
-                                          pack::sub(pack::load(block.y), pack::all(question.point.y)),
-                                          pack::sub(pack::load(block.z), pack::all(question.point.z)));
-    const std::uint32_t mask = pack::less(distances2, question.limits2(pack::load(block.limit2)));
-    found.append(block.item, distances2, mask);
+    // All that the loop needs is at hand by value: what it writes might else be what it reads.
+    const Question asked = question;
+    const pack x = pack::all(asked.point.x), y = pack::all(asked.point.y), z = pack::all(asked.point.z);
+    found.reserve(count * simd::lanes);
+    auto end = found.end();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const sphere_block<T, simd::lanes>& block = blocks[number(i)];
+        const pack distances2 = pack::length2(pack::sub(pack::load(block.x), x), pack::sub(pack::load(block.y), y),
+                                              pack::sub(pack::load(block.z), z));
+        end.append(block.item, distances2, pack::less(distances2, asked.limits2(pack::load(block.limit2))));
+    }
+    found.end_at(end);
 }
 
 /// Adds the answers among the first `count` spheres of a block to `found`, which has room for them; looks at no others,
