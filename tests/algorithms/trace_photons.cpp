@@ -5,6 +5,8 @@
 
 #include <glm/vec3.hpp>
 
+#include <aglow/algorithms/path_trace.hpp>
+
 #include "support/archetypes.hpp"
 #include "support/broken_host.hpp"
 #include "support/catch.hpp"
@@ -224,6 +226,38 @@ TEST_CASE("trace_photons: caustic light without a map of its own goes with the i
     const float indirect = total(apart.indirect).x;
     CHECK(caustic > 0.03f * indirect);
     CHECK(total(joined.indirect).x == Approx(caustic + indirect).epsilon(0.02));
+}
+
+TEST_CASE("trace_photons: every wall of a room of balls takes in as much light as path tracing says") {
+    const auto r = room();
+    const auto maps = trace_photons(r.scene, r.light, {.direct = 100000, .caustic = 40000, .indirect = 200000});
+    const support::material<S> white{.diffuse = S{1}};
+    for (std::size_t wall = 0; wall < 6; ++wall) {
+        const auto& q = r.scene.rectangles[wall];
+        double landed = 0;
+        for (const auto* map : {&maps.direct, &maps.caustic, &maps.indirect}) {
+            for (std::size_t i = 0; i < map->size(); ++i) {
+                const float height = glm::dot(map->position(i) - q.corner, q.normal);
+                if (std::abs(height) < 1e-4f) { landed += double(map->photons()[i].power.x); }
+            }
+        }
+        sample_mean flux;
+        for (std::uint64_t i = 0; i < 30000; ++i) {
+            const random_numbers<float> numbers{{.seed = 9, .path = i}};
+            const vec2<float> u = numbers.at(0, purpose::camera).next_2d();
+            const support::toy_hit<S, float> here{q.corner + q.u * u.x + q.v * u.y, q.normal, &white, 1e-5f};
+            auto random = numbers.at(1, purpose::gather);
+            const auto next = here.sample(q.normal, random, lobe_set::diffuse);
+            const ray<float> gather{lift(here.position, q.normal, next->wi, 1e-5f), next->wi};
+            const S direct = direct_light(r.scene, r.light, here, q.normal, 1e-5f, numbers.at(1, purpose::light),
+                                          {.lit = lobe_set::smooth, .scattered = lobe_set::none});
+            const S rest = walk_path(r.scene, r.light, gather, numbers.fork(1), emission_rule::indirect).radiance;
+            flux.add(4 * pi<double> * double(direct.x + rest.x));
+        }
+        CAPTURE(wall, landed, flux.mean(), flux.standard_error());
+        // One part in a hundred is four standard errors of the photons.
+        CHECK(std::abs(landed - flux.mean()) <= 4 * flux.standard_error() + 0.01 * flux.mean());
+    }
 }
 
 TEST_CASE("trace_photons: only maps without a given number of paths ask the pilot") {
