@@ -38,12 +38,14 @@ template <typename T>
     return normal * (2 * glm::dot(wo, normal)) - wo;
 }
 
-/// `wo` bent at `normal`, which lies on its side; empty at total reflection.
+/// `wo` bent at `normal`, which lies on its side; empty at total reflection, and straight on where the indices are
+/// equal.
 template <typename T>
 [[nodiscard]] std::optional<vec3<T>> refracted(const vec3<T>& wo, const vec3<T>& normal, T eta) {
+    if (eta == 1) { return -wo; }
     const T cosine = glm::dot(wo, normal);
     const T sine2 = (1 - cosine * cosine) / (eta * eta);
-    if (eta != 1 && sine2 >= 1) { return std::nullopt; }
+    if (sine2 >= 1) { return std::nullopt; }
     const T beyond = std::sqrt(std::max(T(0), 1 - sine2));
     return glm::normalize(normal * (cosine / eta - beyond) - wo / eta);
 }

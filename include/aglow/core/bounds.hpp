@@ -41,4 +41,16 @@ struct bounds {
     }
 };
 
+/// The share of the box's size that coordinates of scalar `T` cannot tell there: an ulp of the farthest corner over the
+/// diagonal. Above 1 % a scene lies too far from the origin for its scalar. 0 for an empty box, 1 for a single point.
+template <typename T>
+[[nodiscard]] T coordinate_loss(const bounds<T>& box) {
+    if (box.empty()) { return T(0); }
+    const T low = max_abs(box.low);
+    const T high = max_abs(box.high);
+    const T ulp = (low > high ? low : high) * std::numeric_limits<T>::epsilon();
+    const T size = box.diagonal();
+    return ulp < size ? ulp / size : T(1);
+}
+
 }  // namespace aglow
