@@ -235,7 +235,14 @@ template <typename T>
 class sky_light {
 public:
     sky_light(const sky<T>& s, const aglow::bounds<T>& scene, T error)
-        : sky_{s}, centre_{scene.centre()}, radius_{scene.radius()}, error_{error} {
+        : ground_{s.ground},
+          horizon_{s.horizon},
+          zenith_{s.zenith},
+          window_{s.window.value_or(rectangle<T>{})},
+          has_window_{s.window.has_value()},
+          centre_{scene.centre()},
+          radius_{scene.radius()},
+          error_{error} {
         const T low = aglow::max_component(s.ground);
         first_ = aglow::max_component(s.horizon);
         last_ = aglow::max_component(s.zenith);
@@ -246,8 +253,8 @@ public:
 
     /// Watts that enter the scene's bounding sphere, or the window.
     [[nodiscard]] vec3<T> power() const {
-        if (!sky_.window) {
-            const vec3<T> mean = sky_.ground + (sky_.horizon + sky_.zenith) * T(0.5);
+        if (!has_window_) {
+            const vec3<T> mean = ground_ + (horizon_ + zenith_) * T(0.5);
             return mean * (2 * aglow::pi<T> * aglow::pi<T> * radius_ * radius_);
         }
         return window_power();
@@ -255,13 +262,13 @@ public:
 
     [[nodiscard]] vec3<T> radiance(const vec3<T>& direction) const {
         const T y = direction.y;
-        return y < 0 ? sky_.ground : sky_.horizon + (sky_.zenith - sky_.horizon) * y;
+        return y < 0 ? ground_ : horizon_ + (zenith_ - horizon_) * y;
     }
 
     [[nodiscard]] emission<T> emit(const vec2<T>& where, const vec2<T>& along) const {
-        if (sky_.window) {
-            const vec3<T> n = sky_.window->normal();
-            const emission<T> e = send(sky_.window->at(where), n, error_, vec3<T>{1}, sky_.window->area(), along);
+        if (has_window_) {
+            const vec3<T> n = window_.normal();
+            const emission<T> e = send(window_.at(where), n, error_, vec3<T>{1}, window_.area(), along);
             return {e.path, e.power * radiance(-e.path.direction)};
         }
         const vec3<T> from = direction(along);
@@ -274,9 +281,9 @@ public:
 
     [[nodiscard]] std::optional<illumination<T>> illuminate(const vec3<T>& point, const vec2<T>& u) const {
         constexpr T beyond = std::numeric_limits<T>::infinity();
-        if (sky_.window) {
+        if (has_window_) {
             if (!inside(point)) { return std::nullopt; }
-            const spherical_rectangle<T> seen{*sky_.window, point};
+            const spherical_rectangle<T> seen{window_, point};
             if (!(seen.solid_angle() > 0)) { return std::nullopt; }
             const vec3<T> towards = glm::normalize(seen.at(u) - point);
             return illumination<T>{towards, beyond, radiance(towards) * seen.solid_angle(), 1 / seen.solid_angle()};
@@ -289,9 +296,9 @@ public:
 
     /// Density of `illuminate`, per steradian.
     [[nodiscard]] T pdf(const vec3<T>& point, const vec3<T>& towards) const {
-        if (!sky_.window) { return direction_pdf(towards); }
+        if (!has_window_) { return direction_pdf(towards); }
         if (!inside(point) || !through(point, towards)) { return 0; }
-        const T angle = spherical_rectangle<T>{*sky_.window, point}.solid_angle();
+        const T angle = spherical_rectangle<T>{window_, point}.solid_angle();
         return angle > 0 ? 1 / angle : T(0);
     }
 
@@ -317,29 +324,31 @@ private:
     }
 
     [[nodiscard]] bool inside(const vec3<T>& point) const {
-        return glm::dot(point - sky_.window->corner, sky_.window->normal()) > error_;
+        return glm::dot(point - window_.corner, window_.normal()) > error_;
     }
     [[nodiscard]] bool through(const vec3<T>& point, const vec3<T>& towards) const {
-        const vec3<T> n = sky_.window->normal();
+        const vec3<T> n = window_.normal();
         const T fall = glm::dot(towards, n);
         if (!(fall < 0)) { return false; }
-        const vec3<T> met = point + towards * (glm::dot(sky_.window->corner - point, n) / fall) - sky_.window->corner;
-        const T x = glm::dot(met, sky_.window->along);
-        const T y = glm::dot(met, sky_.window->across);
-        return x >= 0 && y >= 0 && x <= sky_.window->width && y <= sky_.window->height;
+        const vec3<T> met = point + towards * (glm::dot(window_.corner - point, n) / fall) - window_.corner;
+        const T x = glm::dot(met, window_.along);
+        const T y = glm::dot(met, window_.across);
+        return x >= 0 && y >= 0 && x <= window_.width && y <= window_.height;
     }
     [[nodiscard]] vec3<T> window_power() const {
         constexpr int grid = 64;
         vec3<T> sum{0};
-        const aglow::frame<T> out{sky_.window->normal()};
+        const aglow::frame<T> out{window_.normal()};
         for (int i = 0; i < grid * grid; ++i) {
             const vec2<T> u{(T(i % grid) + T(0.5)) / T(grid), (T(i / grid) + T(0.5)) / T(grid)};
             sum += radiance(-out.to_world(aglow::cosine_hemisphere(u)));
         }
-        return sum * (aglow::pi<T> * sky_.window->area() / T(grid * grid));
+        return sum * (aglow::pi<T> * window_.area() / T(grid * grid));
     }
 
-    sky<T> sky_;
+    vec3<T> ground_, horizon_, zenith_;
+    rectangle<T> window_;
+    bool has_window_;
     vec3<T> centre_;
     T radius_, error_, first_{}, last_{}, below_{};
     bool lit_{};

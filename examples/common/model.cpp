@@ -143,7 +143,8 @@ void add_lights(model& into, const aiScene& scene) {
     for (unsigned i = 0; i < scene.mNumLights; ++i) {
         const aiLight& light = *scene.mLights[i];
         if (light.mType != aiLightSource_POINT) {
-            into.notes.push_back(std::string{"light "} + light.mName.C_Str() + ": left out, only point lights are read");
+            into.notes.push_back(std::string{"light "} + light.mName.C_Str() +
+                                 ": left out, only point lights are read");
             continue;
         }
         const aiMatrix4x4 place = place_of(scene, light.mName);
@@ -160,8 +161,8 @@ float half_tangent(const aiCamera& c) {
     return multiplied ? std::tan(c.mHorizontalFOV / aspect / 2) : std::tan(c.mHorizontalFOV / 2) / aspect;
 }
 
-/// Of the formats read here glTF alone has cameras and lights. They stand where their node does; assimp says so a second
-/// time in `mPosition`, which is not to be added.
+/// Of the formats read here glTF alone has cameras and lights. They stand where their node does; assimp says so a
+/// second time in `mPosition`, which is not to be added.
 std::optional<camera<float>> first_camera(const aiScene& scene) {
     if (scene.mNumCameras == 0) { return std::nullopt; }
     const aiCamera& c = *scene.mCameras[0];

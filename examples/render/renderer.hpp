@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -71,8 +72,9 @@ private:
         wanted.caustic = options_.caustic_photons.value_or(wanted.caustic);
         wanted.indirect = options_.indirect_photons.value_or(wanted.indirect);
         wanted.seed = options_.seed;
-        wanted.progress = [this](double) {
-            photons_traced_ = since(start_);
+        wanted.progress = [this](double share) {
+            if (preparing_) { preparing_->show(share); }
+            if (share >= 1) { photons_traced_ = since(start_); }
             return true;
         };
         return wanted;
@@ -141,9 +143,10 @@ private:
     template <typename Make>
     auto prepare(const std::string& rest, Make&& make) {
         start_ = clock::now();
-        progress told{"preparing"};
+        preparing_.emplace("preparing");
         auto made = make();
         const double all = since(start_);
+        preparing_.reset();
         if (photons_traced_ > 0 && rest != "photons") { result_.phases.push_back({"photons", photons_traced_}); }
         result_.phases.push_back({rest, rest == "photons" ? all : all - photons_traced_});
         return made;
@@ -327,7 +330,8 @@ private:
     render_result result_{};
     clock::time_point began_{clock::now()};
     clock::time_point start_{clock::now()};
-    double photons_traced_{0};
+    std::atomic<double> photons_traced_{0};
+    std::optional<progress> preparing_{};
     std::uint32_t taken_{0};
     std::optional<picture> direct_{};
     std::optional<picture> caustic_{};

@@ -54,7 +54,7 @@ std::string quad(int first, const std::string& material) {
 
 /// A unit square at height `y`, its normal upwards.
 std::string square(int y) {
-    const std::string h = " " + std::to_string(y) + " ";
+    const std::string h = std::string{" "}.append(std::to_string(y)).append(" ");
     return "v 0" + h + "0\nv 0" + h + "1\nv 1" + h + "1\nv 1" + h + "0\n";
 }
 
@@ -104,7 +104,8 @@ TEST_CASE("model: OBJ materials become diffuse, glossy, mirror, glass and light"
 TEST_CASE("model: glTF brings metal, roughness, emission, a lamp and a camera") {
     const files dir;
     // One triangle: three positions and three indices, in base 64.
-    const std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],"extensionsUsed":["KHR_lights_punctual"],
+    const std::string text =
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],"extensionsUsed":["KHR_lights_punctual"],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0.25],"intensity":8}]}},
 "nodes":[{"mesh":0},{"camera":0,"translation":[1,2,3]},
 {"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":0}}}],
