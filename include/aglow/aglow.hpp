@@ -93,6 +93,7 @@
 
 // report: how good is it
 #include <aglow/report/audit.hpp>
+#include <aglow/report/audit_pixels.hpp>
 #include <aglow/report/audit_result.hpp>
 #include <aglow/report/audit_sample.hpp>
 #include <aglow/report/bias_variance.hpp>

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -37,7 +38,7 @@ int count(int rounds, const field& f, const P& probe, audit_options options, aud
 }  // namespace
 
 TEST_CASE("audit: every statement holds as often as it says, on six kinds of damage") {
-    constexpr int rounds = 200;
+    constexpr int rounds = 120;
     const auto kind =
         GENERATE(damage::noise, damage::too_bright, damage::outliers, damage::edges, damage::waves, damage::dark);
     const field f{kind, 5};
@@ -164,6 +165,45 @@ TEST_CASE("audit: noise of a finite variance is not called heavy, however differ
         CHECK(a.status == audit_status::certified);
         CHECK(a.unseen.front().what == "caustics of the point light");
     }
+}
+
+TEST_CASE("audit: fireflies in two of a thousand pixels are not missed") {
+    field f{damage::noise};
+    for (std::size_t i = 0; i < field::pixels; i += 500) { f.picture[i] = 15 * f.truth[i] + 0.2; }
+    REQUIRE(f.mean_error() > 0.06);
+    CHECK(count(50, f, f.probe(), {.target = 0.055}, audit_status::certified) == 0);
+    int held = 0;
+    for (std::uint64_t r = 0; r < 100; ++r) {
+        held += audit(f.image(), f.probe(), at_the_edge(f, r)).mean_error_bound >= f.mean_error() ? 1 : 0;
+    }
+    CHECK(held >= 100 * synthetic::least_coverage(100));
+}
+
+TEST_CASE("audit: a leak that few probes meet is not beyond the distribution-free bound, nor certified by it") {
+    field f{damage::none};
+    for (std::size_t i = 0; i < 12; ++i) { f.picture[40 * field::side + 10 + i % 4 + field::side * (i / 4)] *= 9; }
+    const double clipped = mean_of(detail::clipped(f.errors())).mean();
+    REQUIRE(f.mean_error() > 0.02);
+    int held = 0;
+    for (std::uint64_t r = 0; r < 50; ++r) {
+        held += audit(f.image(), f.probe(), {.target = 0.01, .seed = r}).clipped_error_bound >= clipped ? 1 : 0;
+    }
+    CHECK(held == 50);
+    CHECK(count(50, f, f.probe(), {.target = 0.01, .distribution_free = true}, audit_status::certified) == 0);
+}
+
+TEST_CASE("standing out: a flat picture has nothing, an edge neither, and one bright pixel only itself") {
+    std::vector<double> values(25, 2.0);
+    const image_view<double> image{values, 5, 5, 1};
+    for (const double x : standing_out(image, 0.04)) { CHECK(x == 0); }
+    for (std::size_t i = 0; i < 25; i += 5) { values[i] = values[i + 1] = 9; }
+    for (const double x : standing_out(image, 0.04)) { CHECK(x == 0); }
+    for (double& x : values) { x = 2; }
+    values[12] = 22;
+    const std::vector<double> found = standing_out(image, 0.04);
+    CHECK(found[12] == Approx(20 / 2.04));
+    CHECK(std::count(found.begin(), found.end(), 0.0) == 24);
+    CHECK(standing_out(image_view<double>{std::span{values}.first(1), 1, 1, 1}, 0.04).front() == 0);
 }
 
 TEST_CASE("audit: broken probe samples are counted and nothing is certified on them") {

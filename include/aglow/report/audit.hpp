@@ -50,7 +50,8 @@ inline void find_doubts(audit_result& result) {
 inline void judge(audit_result& result, const audit_options& options) {
     find_doubts(result);
     const bool doubtful = !result.reasons.empty();
-    const bool small = result.mean_error_bound <= options.target;
+    const double bound = options.distribution_free ? result.clipped_error_bound : result.mean_error_bound;
+    const bool small = bound <= options.target;
     const bool large = result.mean_error_floor > options.target;
     const double limit = options.bias_target.value_or(std::numeric_limits<double>::infinity());
     const bool neutral = -limit <= result.energy_bias.low && result.energy_bias.high <= limit;

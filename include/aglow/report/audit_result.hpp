@@ -41,6 +41,10 @@ struct audit_options {
     double target = 0.05;
     /// Relative energy bias |Σ(B−I)/ΣI| that must be certified too; absent: the bias is told but not judged.
     std::optional<double> bias_target{};
+    /// Certify by `clipped_error_bound`, which holds for every distribution of errors, instead of `mean_error_bound`,
+    /// which is sharper but can miss errors far above 100 % in so few pixels that no probe finds them (below 3 /
+    /// `probes` of them).
+    bool distribution_free = false;
     /// Probability with which each statement by itself is meant to hold.
     double confidence = 0.95;
     /// Pixels that are looked at; at least 200.

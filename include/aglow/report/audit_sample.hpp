@@ -12,6 +12,7 @@
 
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/random.hpp>
+#include <aglow/report/audit_pixels.hpp>
 #include <aglow/report/audit_result.hpp>
 #include <aglow/report/conformal.hpp>
 #include <aglow/report/probe.hpp>
@@ -25,43 +26,6 @@ namespace aglow::detail {
     return all;
 }
 
-/// Half of the pixels are drawn uniformly and half in proportion to the guess of their relative error, so that few
-/// pixels with large errors are not missed; weights make both one unbiased sample (Veach & Guibas 1995, balance
-/// heuristic).
-class guess_shares {
-public:
-    /// Without guesses all pixels are drawn uniformly and weigh 1.
-    template <std::floating_point T>
-    guess_shares(const audited_picture<T>& picture, double floor) {
-        if (picture.guess.empty()) { return; }
-        double sum = 0;
-        sums_.reserve(picture.image.pixels());
-        for (std::size_t i = 0; i < picture.image.pixels(); ++i) {
-            sum += usable_guess(picture, i, floor) / (std::max(picture.image.gray(i), 0.0) + floor);
-            sums_.push_back(sum);
-        }
-        if (!(sum > 0) || !is_finite(sum)) { sums_.clear(); }
-    }
-
-    /// The pixel at `place` in [0, 1) of the guesses laid end to end.
-    [[nodiscard]] std::size_t pixel_at(double place) const {
-        const auto found = std::upper_bound(sums_.begin(), sums_.end(), place * sums_.back());
-        return std::min(sums_.size() - 1, static_cast<std::size_t>(found - sums_.begin()));
-    }
-
-    /// Uniform density over that of the pixel's drawing; never above 2.
-    [[nodiscard]] double weight(std::size_t pixel) const {
-        if (sums_.empty()) { return 1; }
-        const double share = sums_[pixel] - (pixel > 0 ? sums_[pixel - 1] : 0);
-        return 1 / (0.5 + 0.5 * share / sums_.back() * static_cast<double>(sums_.size()));
-    }
-
-    [[nodiscard]] bool uniform() const { return sums_.empty(); }
-
-private:
-    std::vector<double> sums_{};
-};
-
 /// Draws the probes of an audit and turns them into one number each, per statement. Expects options that were checked.
 template <std::floating_point T>
 class audit_sample {
@@ -71,13 +35,13 @@ public:
           options_{options},
           mean_{mean_value(picture.image)},
           floor_{options.dark * std::abs(mean_)},
-          shares_{picture, floor_} {}
+          shares_{picture, floor_, options.target} {}
 
     /// A pilot tells how many samples a probe needs; then the probes, and more for classes that got too few.
     template <Probe P, Executor E>
     void draw(const P& probe, const E& run) {
         per_batch_ = pilot(probe, run);
-        uniform_ = shares_.uniform() ? options_.probes : options_.probes / 2;
+        uniform_ = static_cast<std::size_t>(shares_.uniform_part() * static_cast<double>(options_.probes));
         records_ = draw_all(probe, run, main_pixels(), per_batch_, part_main);
         extra_ = draw_all(probe, run, pixels_of_rare_classes(), per_batch_, part_extra);
     }
@@ -226,7 +190,7 @@ private:
         return pixels;
     }
 
-    /// Uniform ones first, then those drawn in proportion to the guess.
+    /// Uniform ones first, then those drawn where errors are feared.
     [[nodiscard]] std::vector<std::size_t> main_pixels() const {
         std::vector<std::size_t> pixels = uniform_pixels(options_.probes, part_main);
         for (std::size_t i = uniform_; i < pixels.size(); ++i) {
@@ -301,7 +265,7 @@ private:
     audit_options options_;
     double mean_;
     double floor_;
-    guess_shares shares_;
+    pixel_shares shares_;
     std::size_t uniform_{0};
     std::size_t per_batch_{1};
     std::size_t samples_{0};

@@ -38,8 +38,15 @@ namespace detail {
 
 struct decay_candidate {
     decay_fit fit{};
+    decay_fit floorless{};
     double floor_deviation{0};
 };
+
+[[nodiscard]] inline double misfit(const decay_fit& fit, std::span<const measured_error> points) {
+    double sum = 0;
+    for (const measured_error& m : points) { sum += std::pow((m.error - fit.at(m.work)) / m.deviation, 2); }
+    return sum;
+}
 
 /// Weighted least squares of floor and amplitude, neither below 0, for one exponent.
 [[nodiscard]] inline decay_candidate fit_decay_at(std::span<const measured_error> points, double exponent) {
@@ -54,19 +61,20 @@ struct decay_candidate {
         wxy += weight * x * m.error;
     }
     const double determinant = w * wxx - wx * wx;
-    decay_fit fit{.exponent = exponent};
-    fit.floor = determinant > 0 ? (wxx * wy - wx * wxy) / determinant : 0;
-    fit.amplitude = determinant > 0 ? (w * wxy - wx * wy) / determinant : 0;
-    if (fit.floor <= 0) {
-        fit.floor = 0;
-        fit.amplitude = wxy / wxx;
+    decay_fit floorless{.amplitude = std::max(0.0, wxy / wxx), .exponent = exponent};
+    floorless.misfit = misfit(floorless, points);
+    decay_fit fit = floorless;
+    if (determinant > 0) {
+        fit.floor = (wxx * wy - wx * wxy) / determinant;
+        fit.amplitude = (w * wxy - wx * wy) / determinant;
     }
+    if (fit.floor <= 0) { fit = floorless; }
     if (fit.amplitude <= 0) {
         fit.floor = wy / w;
         fit.amplitude = 0;
     }
-    for (const measured_error& m : points) { fit.misfit += std::pow((m.error - fit.at(m.work)) / m.deviation, 2); }
-    return {fit, determinant > 0 ? std::sqrt(wxx / determinant) : fit.floor};
+    fit.misfit = misfit(fit, points);
+    return {fit, floorless, determinant > 0 ? std::sqrt(wxx / determinant) : fit.floor};
 }
 
 }  // namespace detail
@@ -83,20 +91,27 @@ struct decay_candidate {
             const double slope = std::log(points[0].error / last.error) / std::log(last.work / points[0].work);
             fit.exponent = std::clamp(slope, 0.15, 1.0);
         }
-        fit.amplitude = last.error * std::pow(last.work, fit.exponent);
+        fit.amplitude = std::max(0.0, last.error) * std::pow(last.work, fit.exponent);
         return fit;
     }
     std::vector<detail::decay_candidate> all;
     for (int step = 0; step <= 34; ++step) { all.push_back(detail::fit_decay_at(points, 0.15 + 0.025 * step)); }
-    const auto by_misfit = [](const auto& a, const auto& b) { return a.fit.misfit < b.fit.misfit; };
-    decay_fit best = std::min_element(all.begin(), all.end(), by_misfit)->fit;
+    const auto least = [&](decay_fit detail::decay_candidate::*kind) {
+        return (*std::min_element(all.begin(), all.end(),
+                                  [&](const auto& a, const auto& b) { return (a.*kind).misfit < (b.*kind).misfit; })).*
+               kind;
+    };
+    const decay_fit best = least(&detail::decay_candidate::fit);
+    const decay_fit floorless = least(&detail::decay_candidate::floorless);
     double low = std::numeric_limits<double>::infinity();
     for (const detail::decay_candidate& c : all) {
         const double room = 12 - (c.fit.misfit - best.misfit);  // Δχ² = 12 is three and a half standard deviations
         if (room >= 0) { low = std::min(low, c.fit.floor - c.floor_deviation * std::sqrt(room)); }
     }
-    best.floor_low = std::max(0.0, low);
-    return best;
+    // A floor is believed in only where the measurements ask for it by two standard deviations.
+    decay_fit chosen = floorless.misfit <= best.misfit + 4 ? floorless : best;
+    chosen.floor_low = std::max(0.0, low);
+    return chosen;
 }
 
 }  // namespace aglow
