@@ -52,9 +52,15 @@ struct octree_refusals {
 ///
 /// Threads: one may insert while any number search; no search waits or tries again. A search finds every item whose
 /// insertion happened before it, and of those inserted meanwhile any. Several writers take turns by a lock of their
-/// own. Order: a search shows its finds in the order of their insertion, whatever the tree looks like inside. Space: no
-/// bounds are asked for; the tree grows to where the items are. Scaling all input by a power of two changes nothing.
-/// Memory: an item never moves; it costs some 25 to 30 bytes beside its own (float).
+/// own.
+///
+/// Order: a search shows its finds in the order of their insertion, whatever the index looks like inside.
+///
+/// Space: no bounds are asked for; the trees grow to where the items are. Scaling all input by a power of two changes
+/// nothing. Distances are those of `simd::distance2`, to the bit.
+///
+/// Memory and speed: an item never moves and costs some 25 to 32 bytes beside its own (float). Insertion is fast;
+/// searches are three to five times faster for what has been through `settle`.
 template <typename Item, std::floating_point T = float>
 class octree {
 public:
