@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include <glm/vec3.hpp>
 
@@ -124,8 +126,11 @@ TEST_CASE("progressive: more passes bring the picture nearer to the truth") {
 TEST_CASE("progressive: an alpha outside (0, 1) is refused by name") {
     const auto r = room();
     for (const double alpha : {0.0, 1.0, -0.5, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
-        CHECK_THROWS_WITH((progressive_photon_mapping{r.scene, r.light, {.alpha = alpha}}),
-                          Catch::Matchers::Contains("progressive_options.alpha"));
+        std::string why;
+        try {
+            static_cast<void>(progressive_photon_mapping{r.scene, r.light, {.alpha = alpha}});
+        } catch (const std::invalid_argument& e) { why = e.what(); }
+        CHECK(why.find("progressive_options.alpha") != std::string::npos);
     }
 }
 
