@@ -14,9 +14,32 @@
 
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/simd.hpp>
+#include <aglow/core/simd_avx2.hpp>
+#include <aglow/core/simd_avx512.hpp>
+#include <aglow/core/simd_sse.hpp>
 #include <aglow/core/vec.hpp>
 
 namespace aglow {
+
+/// The pack of sixteen `T` that suits the flags of this compilation best; all give the same answers.
+template <typename T>
+struct sphere_pack_of {
+    using type = simd::plain<T>;
+};
+template <>
+struct sphere_pack_of<float> {
+#if defined(__AVX512F__) && defined(__AVX2__) && defined(__BMI__) && defined(__POPCNT__)
+    using type = simd::avx512;
+#elif defined(__AVX2__) && defined(__BMI__) && defined(__POPCNT__)
+    using type = simd::avx2;
+#elif defined(__SSE4_2__) && defined(__POPCNT__)
+    using type = simd::sse;
+#else
+    using type = simd::plain<float>;
+#endif
+};
+template <typename T>
+using sphere_pack = typename sphere_pack_of<T>::type;
 
 /// How far rounding may carry a distance past its limit: a search box is this much wider than the spheres it looks for.
 template <typename T>
@@ -90,11 +113,11 @@ public:
         T* distance2;
 
         /// Appends the lanes in `mask`. Expects room for them.
-        void append(const std::uint32_t* items, const simd::best<T>& distances2, std::uint32_t mask) {
-            simd::best<T>::compress(item, items, mask);
+        void append(const std::uint32_t* items, const sphere_pack<T>& distances2, std::uint32_t mask) {
+            sphere_pack<T>::compress(item, items, mask);
             item += std::popcount(mask);
             if constexpr (WithDistances) {
-                simd::best<T>::compress(distance2, distances2, mask);
+                sphere_pack<T>::compress(distance2, distances2, mask);
                 distance2 += std::popcount(mask);
             }
         }
@@ -210,7 +233,7 @@ struct within_question {
 template <typename Block, typename Number, typename Question, typename T, bool D>
 void ask(const Block* blocks, std::uint32_t count, const Number& number, const Question& question,
          sphere_hits<T, D>& found) {
-    using pack = simd::best<T>;
+    using pack = sphere_pack<T>;
     // All that the loop needs is at hand by value: what it writes might else be what it reads.
     const Question asked = question;
     const pack x = pack::all(asked.point.x), y = pack::all(asked.point.y), z = pack::all(asked.point.z);
@@ -235,7 +258,7 @@ void ask(const sphere_block<T, Lanes>& block, std::uint32_t count, const Questio
     }
 }
 
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && defined(__AVX2__) && defined(__BMI__) && defined(__POPCNT__)
 /// The same for floats, at once: a masked load touches no other lane.
 template <unsigned Lanes, typename Question, bool D>
     requires(Lanes <= simd::lanes)
