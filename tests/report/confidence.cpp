@@ -75,6 +75,23 @@ TEST_CASE("skewed upper bound: holds where the mean rests on few large numbers, 
     CHECK(student < synthetic::least_coverage(2000));
 }
 
+TEST_CASE("cautious interval: holds on skewed and on long-tailed symmetric laws, where one of its parents does not") {
+    const auto tailed = [](random_sampler<double>& random) {
+        return (random.next_1d() < 0.5 ? -1 : 1) * std::exp(1.5 * synthetic::normal(random));
+    };
+    const double mean = 0.05 * 0.5 + 0.95 * 0.01;
+    const auto holds = [](double truth) {
+        return [truth](auto s) { return cautious_interval(s, 0.95).contains(truth); };
+    };
+    CHECK(share(2000, 200, seldom_large, holds(mean)) >= synthetic::least_coverage(2000));
+    CHECK(share(2000, 200, tailed, holds(0)) >= synthetic::least_coverage(2000));
+    CHECK(share(2000, 200, tailed, [](auto s) {
+              std::vector<double> mirrored(s.begin(), s.end());
+              for (double& x : mirrored) { x = -x; }
+              return skewed_upper_bound(s, 0.975) >= 0 && skewed_upper_bound(mirrored, 0.975) >= 0;
+          }) < synthetic::least_coverage(2000));
+}
+
 TEST_CASE("bernstein and betting bounds: hold for every law in [0, 1], betting with much less room") {
     const double truth = 0.05 * 0.5 + 0.95 * 0.01;
     double bernstein = 0;

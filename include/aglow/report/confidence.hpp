@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include <aglow/core/numbers.hpp>
 #include <aglow/report/distributions.hpp>
@@ -56,6 +57,17 @@ struct interval {
     if (std::abs(skew) < 1e-3) { return all.mean() + t * all.deviation(); }
     const double turned = 3 / skew * (std::cbrt(1 - skew * (t + skew / (6 * n))) - 1);
     return all.mean() - all.deviation() * turned;
+}
+
+/// Two-sided interval that reaches as far as Student's and as `skewed_upper_bound` on either side: the first is right
+/// for symmetric laws with long tails, the second for skewed ones.
+[[nodiscard]] inline interval cautious_interval(std::span<const double> values, double confidence) {
+    const interval student = student_interval(mean_of(values), confidence);
+    std::vector<double> mirrored(values.begin(), values.end());
+    for (double& x : mirrored) { x = -x; }
+    const double low = -skewed_upper_bound(mirrored, 0.5 + confidence / 2);
+    const double high = skewed_upper_bound(values, 0.5 + confidence / 2);
+    return {student.estimate, std::min(student.low, low), std::max(student.high, high)};
 }
 
 /// One-sided bound for a mean of values in [0, 1], valid for every distribution (Maurer & Pontil 2009, theorem 4).
