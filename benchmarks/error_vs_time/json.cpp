@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <aglow/core/numbers.hpp>
+
 namespace error_vs_time {
 
 namespace {
@@ -27,7 +29,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string written(double number) {
-    if (!std::isfinite(number)) { return "null"; }
+    if (!aglow::is_finite(number)) { return "null"; }
     char digits[64];
     return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
 }

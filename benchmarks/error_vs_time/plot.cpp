@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <aglow/core/numbers.hpp>
+
 namespace error_vs_time {
 
 namespace {
@@ -25,7 +27,7 @@ struct log_axis {
     double to{1};
 
     void include(double value) {
-        if (!(value > 0) || !std::isfinite(value)) { return; }
+        if (!(value > 0) || !aglow::is_finite(value)) { return; }
         low = std::min(low, value);
         high = std::max(high, value);
     }
@@ -151,7 +153,7 @@ std::string escaped(std::string_view text) {
 }
 
 std::string rounded(double x, int significant) {
-    if (!std::isfinite(x)) { return "–"; }
+    if (!aglow::is_finite(x)) { return "–"; }
     if (x == 0) { return "0"; }
     char digits[64];
     const double size = std::abs(x);
