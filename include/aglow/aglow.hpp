@@ -76,6 +76,7 @@
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/final_gather.hpp>
 #include <aglow/algorithms/gather.hpp>
+#include <aglow/algorithms/host_faults.hpp>
 #include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>

@@ -82,7 +82,8 @@ public:
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
-        const layer_sum layers{direct_layer{scene_, lights_}, cache_layer{cache_, source_, emission_rule::indirect}};
+        const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
+                               cache_layer{cache_, source_, emission_rule::indirect}};
         return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
     }
 
@@ -140,7 +141,7 @@ public:
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         const auto reading = source();
-        const layer_sum layers{direct_layer{scene_, lights_},
+        const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.caching.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
                                cache_layer{cache_, reading, base_.caustics()}};
         return layered_integrator{scene_, lights_, layers, options_.caching.paths}(eye, numbers);

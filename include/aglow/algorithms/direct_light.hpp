@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include <aglow/algorithms/host_faults.hpp>
 #include <aglow/concepts/light.hpp>
 
 namespace aglow {
@@ -55,6 +56,8 @@ struct light_sharing {
     lobe_set lit{lobe_set::smooth};        ///< lobes that are lit here
     lobe_set scattered{lobe_set::smooth};  ///< of these, lobes from which a scattered ray will look too; exactly what
                                            ///< is asked of `sample`, specular lobes included (name them in both)
+    host_faults* faults{nullptr};          ///< where broken light is noted; null for nowhere
+    double carried{1};                     ///< what the asking path carries of it
 };
 
 /// Radiance that leaves `hit` towards `wo`, having come straight from `lights`: an unbiased estimate of one shadow ray,
@@ -80,7 +83,11 @@ template <Scene World, Illuminator Lights, Sampler R>
         reflected = reflected + hit.evaluate(wo, wi, shared) * band_of<S>(share);
     }
     const S radiance = light->radiance_over_pdf * reflected * band_of<S>(cosine);
-    if (!is_radiance(radiance) || is_black(radiance)) { return S{}; }
+    if (!is_radiance(radiance)) {
+        if (sharing.faults) { sharing.faults->note(host_fault::radiance, sharing.carried); }
+        return S{};
+    }
+    if (is_black(radiance)) { return S{}; }
     return sees(scene, hit, wi, T(light->distance), error) ? radiance : S{};
 }
 

@@ -1,8 +1,11 @@
 // The books of a particle simulation: where every emitted particle ended, to the last one.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include <aglow/algorithms/host_faults.hpp>
 #include <aglow/concepts/spectrum.hpp>
 
 namespace aglow {
@@ -21,6 +24,7 @@ struct energy_ledger {
     std::uint64_t capped{0};    ///< cut off at the caller's depth cap: this power is lost, the result darker
     std::uint64_t dropped{0};   ///< had power that was NaN, infinite or negative, or met a broken hit
     std::uint64_t bounces{0};   ///< surfaces met in all
+    fault_counts faults{};      ///< what was wrong with the dropped ones, by `host_fault`
     S power_emitted{};
     S power_escaped{};
     S power_absorbed{};  ///< expected absorption: what scattering took, surface by surface
@@ -38,6 +42,7 @@ struct energy_ledger {
         capped += other.capped;
         dropped += other.dropped;
         bounces += other.bounces;
+        for (std::size_t k = 0; k < faults.size(); ++k) { faults[k] += other.faults[k]; }
         power_emitted = power_emitted + other.power_emitted;
         power_escaped = power_escaped + other.power_escaped;
         power_absorbed = power_absorbed + other.power_absorbed;
@@ -47,5 +52,15 @@ struct energy_ledger {
         return *this;
     }
 };
+
+/// The books of all `ledgers` together, joined two by two: one long sum of floats would stand still.
+template <Spectrum S>
+[[nodiscard]] energy_ledger<S> joined(std::span<const energy_ledger<S>> ledgers) {
+    if (ledgers.empty()) { return {}; }
+    if (ledgers.size() == 1) { return ledgers.front(); }
+    const std::size_t half = ledgers.size() / 2;
+    energy_ledger<S> both = joined<S>(ledgers.first(half));
+    return both += joined<S>(ledgers.subspan(half));
+}
 
 }  // namespace aglow

@@ -65,8 +65,9 @@ private:
 template <Scene World, Illuminator Lights>
 class direct_layer {
 public:
-    direct_layer(const World& scene, const Lights& lights, lobe_set lit = lobe_set::smooth)
-        : scene_{scene}, lights_{lights}, lit_{lit} {}
+    direct_layer(const World& scene, const Lights& lights, lobe_set lit = lobe_set::smooth,
+                 host_faults* faults = nullptr)
+        : scene_{scene}, lights_{lights}, lit_{lit}, faults_{faults} {}
 
     template <typename N>
     [[nodiscard]] estimate<spectrum_of<World>> operator()(const hit_of<World>& hit, const vec3<scalar_of<World>>& wo,
@@ -76,7 +77,7 @@ public:
         const lobe_set scattered = hit.lobes() & ~lobe_set::diffuse;
         if (!any(hit.lobes(), lit_ & lobe_set::smooth)) { return {}; }
         return {direct_light(scene_, lights_, hit, wo, error, numbers.at(bounce, purpose::light),
-                             {.lit = lit_ | lobe_set::specular, .scattered = scattered}),
+                             {.lit = lit_ | lobe_set::specular, .scattered = scattered, .faults = faults_}),
                 0};
     }
 
@@ -84,6 +85,7 @@ private:
     const World& scene_;
     const Lights& lights_;
     lobe_set lit_;
+    host_faults* faults_;
 };
 
 /// Several layers, added up.

@@ -20,13 +20,15 @@ namespace aglow {
 struct path_options {
     std::uint32_t most_bounces{0};   ///< depth cap, 0 for none; a cap makes the picture darker
     std::uint32_t roulette_from{5};  ///< bounces before Russian roulette may end a path
+    host_faults* faults{nullptr};    ///< where the host's broken answers are noted; null for nowhere. Must live as long
 };
 
 /// Which emission a walk takes for itself where its first ray, or a chain of mirrors after it, meets a light.
 enum class emission_rule : std::uint8_t {
     all,         ///< a ray from the eye: everything it meets
     indirect,    ///< a gather ray: the asker looked for lights himself, but not through mirrors
-    no_caustics  ///< a gather ray beside a caustic map: not through mirrors either
+    no_caustics, ///< a gather ray beside a caustic map: not through mirrors either
+    no_reflected ///< beside a map of reflected caustics too: nor through mirrors after one diffuse or glossy bounce
 };
 
 /// The end of no path: every path goes on by itself.
@@ -46,7 +48,14 @@ struct walk_state {
     T scatter_pdf{0};     ///< density of `path` there; 0 where specular or the eye
     lobe_set last{lobe_set::none};
     bool mirrored{true};  ///< only specular bounces so far
+    bool scattered{false};  ///< more than one diffuse or glossy bounce
 };
+
+/// Whether light met over a mirror now belongs to a map of reflected caustics.
+template <Scene World>
+[[nodiscard]] bool reflects_caustic(const walk_state<World>& at, emission_rule rule) {
+    return rule == emission_rule::no_reflected && !at.mirrored && !at.scattered;
+}
 
 /// The share of emission met by a scattered ray that is not the light sampling's (1 for the eye and for mirrors).
 template <Scene World, typename Lights>
@@ -54,9 +63,9 @@ template <Scene World, typename Lights>
                                               const hit_of<World>& hit, emission_rule rule, std::uint32_t bounce) {
     using T = scalar_of<World>;
     if (at.mirrored && rule != emission_rule::all) {
-        return bounce == 1 || rule == emission_rule::no_caustics ? T(0) : T(1);
+        return bounce == 1 || rule != emission_rule::indirect ? T(0) : T(1);
     }
-    if (!any(at.last, lobe_set::smooth)) { return T(1); }
+    if (!any(at.last, lobe_set::smooth)) { return reflects_caustic(at, rule) ? T(0) : T(1); }
     if constexpr (TellsPdf<Lights, hit_of<World>>) {
         return balance(at.scatter_pdf, T(lights.pdf(at.came_from, at.path.direction, hit)));
     } else {
@@ -71,14 +80,21 @@ template <Scene World, typename Lights>
     using T = scalar_of<World>;
     if constexpr (TellsEscapedPdf<Lights, T>) {
         if (at.mirrored && rule != emission_rule::all) {
-            return bounce == 1 || rule == emission_rule::no_caustics ? T(0) : T(1);
+            return bounce == 1 || rule != emission_rule::indirect ? T(0) : T(1);
         }
-        if (!any(at.last, lobe_set::smooth)) { return T(1); }
+        if (!any(at.last, lobe_set::smooth)) { return reflects_caustic(at, rule) ? T(0) : T(1); }
         return balance(at.scatter_pdf, T(lights.escaped_pdf(at.came_from, at.path.direction)));
     } else {
         // Nobody looks at the sky, so every ray that meets it counts.
         return T(1);
     }
+}
+
+/// Notes what a path carried when a broken answer of the host ended it.
+template <Spectrum S>
+[[nodiscard]] bool lose(const path_options& options, host_fault why, const S& carried) {
+    if (options.faults) { options.faults->note(why, static_cast<double>(max_component(carried))); }
+    return false;
 }
 
 /// Sends the walk on from `hit` by one of `lobes`; false where it ends.
@@ -94,14 +110,18 @@ template <Scene World, Numbers N>
     const auto next = hit.sample(wo, scatter_numbers, lobes);
     if (!next) { return false; }
     const vec3<T> wi = next->wi;
+    const S carried = at.throughput;
     at.throughput = at.throughput * next->weight;
-    if (!is_radiance(at.throughput) || is_black(at.throughput) || !is_direction(wi)) { return false; }
+    if (!is_radiance(at.throughput)) { return lose(options, host_fault::weight, carried); }
+    if (is_black(at.throughput)) { return false; }
+    if (!is_direction(wi)) { return lose(options, host_fault::direction, carried); }
     if (bounce >= options.roulette_from) {
         const B q = survival(B(1), max_component(at.throughput), survival_ceiling<B>(bounce));
         if (!(numbers.at(bounce, purpose::roulette).next_1d() < q)) { return false; }
         at.throughput = at.throughput * (1 / q);
     }
     at.last = next->lobe;
+    at.scattered = at.scattered || (!at.mirrored && any(next->lobe, lobe_set::smooth));
     at.mirrored = at.mirrored && !any(next->lobe, lobe_set::smooth);
     at.scatter_pdf = any(next->lobe, lobe_set::smooth) ? T(next->pdf) : T(0);
     at.came_from = vec3<T>(hit.position);
@@ -141,7 +161,11 @@ public:
         for (std::uint32_t bounce = 1;; ++bounce) {
             const auto hit = scene_.intersect(at_.path);
             if (!hit) { return leave(bounce); }
-            if (!is_sound(*hit, at_.path)) { return result_; }
+            if (!is_sound(*hit, at_.path)) {
+                const bool placed = is_placed(*hit, at_.path);
+                (void)lose(options_, placed ? host_fault::normal : host_fault::place, at_.throughput);
+                return result_;
+            }
             const walk_stop<World> stop = arrive(*hit, bounce);
             if (options_.most_bounces != 0 && bounce > options_.most_bounces) { return result_; }
             const lobe_set on = shade(*this, stop);
@@ -149,10 +173,14 @@ public:
         }
     }
 
+    /// Whether the walk met nothing but mirrors before where it stands.
+    [[nodiscard]] bool mirrored() const { return at_.mirrored; }
+
     /// Takes in light that leaves the surface the walk stands at, unless its numbers are broken.
     void add(const S& radiance) {
         const S arriving = at_.throughput * radiance;
-        if (is_radiance(arriving)) { result_.radiance = result_.radiance + arriving; }
+        if (!is_radiance(arriving)) { return void(lose(options_, host_fault::radiance, at_.throughput)); }
+        result_.radiance = result_.radiance + arriving;
     }
     void add(const estimate<S>& light) {
         add(light.value);
@@ -160,13 +188,16 @@ public:
         if (is_finite(error)) { result_.error += error; }
     }
 
+    /// The largest band of what the walk carries.
+    [[nodiscard]] double carried() const { return static_cast<double>(max_component(at_.throughput)); }
+
 private:
     walk_stop<World> arrive(const hit_of<World>& hit, std::uint32_t bounce) {
         const vec3<T> wo = -at_.path.direction;
         const T travelled = glm::dot(vec3<T>(hit.position) - at_.path.origin, at_.path.direction);
         if (bounce == 1) { result_.distance = travelled; }
         const S glow = emitted(hit, wo);
-        if (!is_black(glow)) { add(glow * B(emission_share(at_, lights_, hit, rule_, bounce))); }
+        if (!is_radiance(glow) || !is_black(glow)) { add(glow * B(emission_share(at_, lights_, hit, rule_, bounce))); }
         return {hit, wo, travelled, error_of(hit, at_.path.origin), bounce};
     }
 
@@ -189,9 +220,9 @@ private:
 
 /// Walks along `start` and returns the radiance that comes back along it, and the distance of the first hit.
 ///
-/// `terminal(hit, wo, travelled, error)` may end the walk with an optional `estimate` of the radiance that the diffuse
-/// lobes of `hit` send towards `wo`, direct light included; `travelled` is the length of the last leg. Samples with
-/// broken hits or numbers end where they are, never summed.
+/// `terminal(hit, wo, travelled, error, mirrored)` may end the walk with an optional `estimate` of the radiance that the
+/// diffuse lobes of `hit` send towards `wo`, direct light included; `travelled` is the length of the last leg,
+/// `mirrored` tells that there were only mirrors before. Samples with broken hits or numbers end where they are, never summed.
 template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
 [[nodiscard]] incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
     const World& scene, const Lights& lights, const ray<scalar_of<World>>& start, const N& numbers,
@@ -200,15 +231,16 @@ template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_ter
         lobe_set lobes = stop.hit.lobes();
         if constexpr (!std::same_as<Terminal, no_terminal>) {
             if (any(lobes, lobe_set::diffuse)) {
-                if (const auto rest = terminal(stop.hit, stop.wo, stop.travelled, stop.error)) {
+                if (const auto rest = terminal(stop.hit, stop.wo, stop.travelled, stop.error, walk.mirrored())) {
                     walk.add(*rest);
                     lobes = lobes & ~lobe_set::diffuse;
                 }
             }
         }
         if (any(lobes, lobe_set::smooth)) {
-            walk.add(direct_light(scene, lights, stop.hit, stop.wo, stop.error, numbers.at(stop.bounce, purpose::light),
-                                  {.lit = lobes, .scattered = lobes}));
+            walk.add(
+                direct_light(scene, lights, stop.hit, stop.wo, stop.error, numbers.at(stop.bounce, purpose::light),
+                             {.lit = lobes, .scattered = lobes, .faults = options.faults, .carried = walk.carried()}));
         }
         return lobes;
     };

@@ -46,10 +46,12 @@ public:
         const map_layer<spectrum, scalar> indirect{maps_.indirect, options_.density};
         if (options_.direct_from_map) {
             const map_layer<spectrum, scalar> direct{maps_.direct, options_.density};
-            const direct_layer gloss{scene_, lights_, lobe_set::glossy};
+            const direct_layer gloss{scene_, lights_, lobe_set::glossy, options_.paths.faults};
             return trace(eye, numbers, layer_sum{direct, gloss, caustic, indirect});
         }
-        return trace(eye, numbers, layer_sum{direct_layer{scene_, lights_}, caustic, indirect});
+        return trace(
+            eye, numbers,
+            layer_sum{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults}, caustic, indirect});
     }
 
     [[nodiscard]] const photon_maps<spectrum, scalar>& maps() const { return maps_; }
@@ -96,7 +98,8 @@ public:
 
     /// What gather rays may take for themselves: light over mirrors only where no caustic map shows it.
     [[nodiscard]] emission_rule caustics() const {
-        return maps_.caustic.paths > 0 ? emission_rule::no_caustics : emission_rule::indirect;
+        if (maps_.caustic.paths == 0) { return emission_rule::indirect; }
+        return maps_.reflected.paths > 0 ? emission_rule::no_reflected : emission_rule::no_caustics;
     }
 
 private:
@@ -125,8 +128,9 @@ public:
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         const photon_source<World, Lights> source{scene_, lights_, base_.points(), options_.source};
-        const layer_sum layers{direct_layer{scene_, lights_},
+        const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
+                               map_layer<spectrum, scalar>{base_.maps().reflected, reflected_density()},
                                gather_layer{source, {.rays = options_.rays, .caustics = base_.caustics()}}};
         return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
     }

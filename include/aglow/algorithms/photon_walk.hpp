@@ -15,14 +15,17 @@ namespace aglow {
 
 /// How a particle came to where it lands.
 enum class photon_history : std::uint8_t {
-    direct,   ///< straight from the light
-    caustic,  ///< over specular surfaces only
-    indirect  ///< with at least one diffuse or glossy bounce
+    direct,    ///< straight from the light
+    caustic,   ///< over specular surfaces only
+    indirect,  ///< with a diffuse or glossy bounce, but not as the next
+    reflected  ///< a caustic that was reflected once by a diffuse or glossy surface, and then over mirrors at most
 };
 
 /// The history after one more scattering at `lobe`.
 [[nodiscard]] constexpr photon_history after(photon_history before, lobe_set lobe) {
-    if (any(lobe, lobe_set::smooth)) { return photon_history::indirect; }
+    if (any(lobe, lobe_set::smooth)) {
+        return before == photon_history::caustic ? photon_history::reflected : photon_history::indirect;
+    }
     return before == photon_history::direct ? photon_history::caustic : before;
 }
 
@@ -33,11 +36,17 @@ template <typename T>
     return is_finite(norm2) && norm2 > T(0.99) && norm2 < T(1.01);
 }
 
+/// Whether a hit is at a place: finite, and not behind the ray.
+template <Hit H, typename T>
+[[nodiscard]] bool is_placed(const H& hit, const ray<T>& from) {
+    const T along = glm::dot(vec3<T>(hit.position) - from.origin, from.direction);
+    return is_finite(along) && along >= -error_of(hit, from.origin);
+}
+
 /// Whether a hit can be trusted: finite place, unit normal, not behind the ray.
 template <Hit H, typename T>
 [[nodiscard]] bool is_sound(const H& hit, const ray<T>& from) {
-    const T along = glm::dot(vec3<T>(hit.position) - from.origin, from.direction);
-    return is_finite(along) && is_direction(vec3<T>(hit.normal)) && along >= -error_of(hit, from.origin);
+    return is_placed(hit, from) && is_direction(vec3<T>(hit.normal));
 }
 
 /// Most surfaces that a path meets before roulette may end it even where nothing is absorbed.
@@ -68,6 +77,13 @@ template <Spectrum S>
     return false;
 }
 
+/// Books a particle that a broken answer of the host ended.
+template <Spectrum S>
+[[nodiscard]] bool drop(energy_ledger<S>& ledger, host_fault why, const S& power) {
+    ++ledger.faults[static_cast<std::size_t>(why)];
+    return book(ledger.dropped, ledger.power_dropped, power);
+}
+
 /// Sends a particle out; false where there is none to follow.
 template <Emitter Lights, Numbers N, Spectrum S, std::floating_point T>
 [[nodiscard]] bool emit_photon(const Lights& lights, const N& numbers, photon_state<S, T>& at,
@@ -78,11 +94,9 @@ template <Emitter Lights, Numbers N, Spectrum S, std::floating_point T>
     at.power = start.power;
     ++ledger.emitted;
     const T place = length2(at.path.origin);
-    if (!is_radiance(at.power)) { return book(ledger.dropped, ledger.power_dropped, S{}); }
+    if (!is_radiance(at.power)) { return drop(ledger, host_fault::power, S{}); }
     ledger.power_emitted = ledger.power_emitted + at.power;
-    if (!is_finite(place) || !is_direction(at.path.direction)) {
-        return book(ledger.dropped, ledger.power_dropped, at.power);
-    }
+    if (!is_finite(place) || !is_direction(at.path.direction)) { return drop(ledger, host_fault::emission, at.power); }
     return is_black(at.power) ? book(ledger.unneeded, ledger.power_unneeded, at.power) : true;
 }
 
@@ -97,7 +111,8 @@ template <Surface H, Numbers N, Spectrum S, std::floating_point T>
     if (!next) { return book(ledger.absorbed, ledger.power_absorbed, at.power); }
     const vec3<T> wi = next->wi;
     const S scattered = at.power * (next->weight * B(adjoint(hit, wo, wi)));
-    if (!is_radiance(scattered) || !is_direction(wi)) { return book(ledger.dropped, ledger.power_dropped, at.power); }
+    if (!is_radiance(scattered)) { return drop(ledger, host_fault::weight, at.power); }
+    if (!is_direction(wi)) { return drop(ledger, host_fault::direction, at.power); }
     ledger.power_absorbed = ledger.power_absorbed + (at.power + scattered * B(-1));
     const B q = survival(max_component(at.power), max_component(scattered), survival_ceiling<B>(bounce));
     if (!(numbers.at(bounce, purpose::roulette).next_1d() < q)) {
@@ -123,7 +138,8 @@ void walk_photon(const World& scene, const Lights& lights, const N& numbers, std
     for (std::uint32_t bounce = 1; going; ++bounce) {
         const auto hit = scene.intersect(at.path);
         if (!hit) { return void(detail::book(ledger.escaped, ledger.power_escaped, at.power)); }
-        if (!is_sound(*hit, at.path)) { return void(detail::book(ledger.dropped, ledger.power_dropped, at.power)); }
+        if (!is_placed(*hit, at.path)) { return void(detail::drop(ledger, host_fault::place, at.power)); }
+        if (!is_direction(vec3<T>(hit->normal))) { return void(detail::drop(ledger, host_fault::normal, at.power)); }
         ++ledger.bounces;
         if (any(hit->lobes(), lobe_set::smooth) && !land(*hit, vec3<T>(-at.path.direction), at.power, at.history)) {
             return void(detail::book(ledger.unneeded, ledger.power_unneeded, at.power));
