@@ -98,8 +98,7 @@ public:
 
     /// What gather rays may take for themselves: light over mirrors only where no caustic map shows it.
     [[nodiscard]] emission_rule caustics() const {
-        if (maps_.caustic.paths == 0) { return emission_rule::indirect; }
-        return maps_.reflected.paths > 0 ? emission_rule::no_reflected : emission_rule::no_caustics;
+        return maps_.caustic.paths > 0 ? emission_rule::no_caustics : emission_rule::indirect;
     }
 
 private:
@@ -130,7 +129,6 @@ public:
         const photon_source<World, Lights> source{scene_, lights_, base_.points(), options_.source};
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
-                               map_layer<spectrum, scalar>{base_.maps().reflected, reflected_density()},
                                gather_layer{source, {.rays = options_.rays, .caustics = base_.caustics()}}};
         return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
     }
