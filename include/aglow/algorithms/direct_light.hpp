@@ -74,8 +74,10 @@ template <Scene World, Illuminator Lights, Sampler R>
     if (!light) { return S{}; }
     const vec3<T> wi = light->towards;
     const T cosine = std::abs(glm::dot(vec3<T>(hit.normal), wi));
-    S reflected = hit.evaluate(wo, wi, sharing.lit & ~sharing.scattered);
-    const lobe_set shared = sharing.lit & sharing.scattered;
+    // What the scene cannot have by its type is no code either.
+    const lobe_set lit = sharing.lit & static_lobes<World>;
+    S reflected = hit.evaluate(wo, wi, lit & ~sharing.scattered);
+    const lobe_set shared = lit & sharing.scattered;
     if (any(shared, lobe_set::smooth)) {
         const bool told = is_finite(T(light->distance)) ? TellsPdf<Lights, hit_of<World>> : TellsEscapedPdf<Lights, T>;
         const bool met = told && light->pdf > 0;

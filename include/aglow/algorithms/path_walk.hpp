@@ -99,7 +99,7 @@ template <Scene World, Numbers N>
     using B = band_of<S>;
     if (!any(lobes)) { return false; }
     auto scatter_numbers = numbers.at(bounce, purpose::scatter);
-    const auto next = hit.sample(wo, scatter_numbers, lobes);
+    const auto next = hit.sample(wo, scatter_numbers, lobes & static_lobes<World>);
     if (!next) { return false; }
     const vec3<T> wi = next->wi;
     const S carried = at.throughput;

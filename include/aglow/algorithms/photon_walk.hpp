@@ -98,13 +98,13 @@ template <Emitter Lights, Numbers N, Spectrum S, std::floating_point T>
 }
 
 /// Scatters a particle at `hit`, its surface number `bounce`; false where it ends.
-template <Surface H, Numbers N, Spectrum S, std::floating_point T>
+template <lobe_set Possible = lobe_set::all, Surface H, Numbers N, Spectrum S, std::floating_point T>
 [[nodiscard]] bool scatter_photon(const H& hit, const N& numbers, std::uint32_t bounce, photon_state<S, T>& at,
                                   energy_ledger<S>& ledger) {
     using B = band_of<S>;
     const vec3<T> wo = -at.path.direction;
     auto scatter_numbers = numbers.at(bounce, purpose::scatter);
-    const auto next = hit.sample(wo, scatter_numbers, lobe_set::all);
+    const auto next = hit.sample(wo, scatter_numbers, Possible);
     if (!next) { return book(ledger.absorbed, ledger.power_absorbed, at.power); }
     const vec3<T> wi = next->wi;
     const S scattered = at.power * (next->weight * B(adjoint(hit, wo, wi)));
@@ -144,7 +144,7 @@ void walk_photon(const World& scene, const Lights& lights, const N& numbers, std
         if (most_bounces != 0 && bounce > most_bounces) {
             return void(detail::book(ledger.capped, ledger.power_capped, at.power));
         }
-        going = detail::scatter_photon(*hit, numbers, bounce, at, ledger);
+        going = detail::scatter_photon<static_lobes<World>>(*hit, numbers, bounce, at, ledger);
     }
 }
 
