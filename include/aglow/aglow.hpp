@@ -15,6 +15,7 @@
 #include <aglow/core/simd.hpp>
 #include <aglow/core/simd_avx2.hpp>
 #include <aglow/core/simd_avx512.hpp>
+#include <aglow/core/simd_best.hpp>
 #include <aglow/core/simd_sse.hpp>
 #include <aglow/core/simd_tables.hpp>
 #include <aglow/core/sobol.hpp>
@@ -37,6 +38,8 @@
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_cloud.hpp>
 #include <aglow/containers/kd_crowd.hpp>
+#include <aglow/containers/kd_halve.hpp>
+#include <aglow/containers/kd_kernels.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_median.hpp>
 #include <aglow/containers/kd_nearest_one.hpp>

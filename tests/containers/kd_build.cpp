@@ -1,5 +1,5 @@
 #include <aglow/containers/kd_build.hpp>
-#include <aglow/containers/kd_search.hpp>
+#include <aglow/containers/kd_kernels.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -25,14 +25,14 @@ std::vector<vec3<float>> walls(std::size_t count) {
     return points;
 }
 
-template <typename P>
+template <typename Runner>
 detail::kd_storage<float> tree_of(const std::vector<vec3<float>>& points) {
     detail::kd_storage<float> tree;
     detail::kd_cloud<float> cloud{points.size()};
     detail::kd_cloud<float> spare{points.size()};
     const auto same = [](const vec3<float>& p) { return p; };
     tree.shape(static_cast<std::uint32_t>(detail::take(cloud, points, same, in_sequence{})));
-    detail::kd_builder<P>{tree, cloud, spare}.build(in_sequence{});
+    detail::kd_builder<float, Runner>{tree, cloud, spare}.build(in_sequence{});
     return tree;
 }
 
@@ -42,44 +42,68 @@ struct found {
     bool operator==(const found&) const = default;
 };
 
-template <typename P>
+template <typename Runner>
 found search(const detail::kd_storage<float>& tree, const vec3<float>& point, std::uint32_t k) {
     detail::kd_probe<float> probe;
     probe.point = point;
     probe.enough = k;
-    detail::go_home<P>(tree, probe);
-    detail::start(tree, probe);
     detail::kd_candidates<float> list;
     list.reserve(2 * k + 1024);
-    kd_accept_all all;
-    const float guess = detail::guess_radius2<P>(tree, probe, k);
-    const float farthest = detail::find_nearest<P>(tree, probe, k, guess, 1e30f, list, all);
+    const detail::kd_task<float> task{k, 1e30f, 0};
+    const float farthest =
+        Runner::template run<detail::nearest_kernel>(tree, probe, task, list, detail::kd_filter<float>{});
     return {{list.slots.begin(), list.slots.begin() + list.count}, farthest};
 }
 
-}  // namespace
+#if defined(__x86_64__) && defined(__GNUC__)
+struct avx2_runner {
+    template <typename Kernel, typename... Arguments>
+    static auto run(Arguments&&... arguments) {
+        return simd::run_avx2<Kernel>(arguments...);
+    }
+};
+struct sse_runner {
+    template <typename Kernel, typename... Arguments>
+    static auto run(Arguments&&... arguments) {
+        return simd::run_sse<Kernel>(arguments...);
+    }
+};
+#endif
 
-TEST_CASE("kd_build: the plain pack and the best build the same tree and find the same") {
-    using best = simd::best<float>;
-    using plain = simd::plain<float>;
+using best_runner = detail::kd_best_runner<float>;
+using plain_runner = detail::kd_pack_runner<simd::plain<float>>;
+
+/// Whether a runner builds the plain one's tree and finds in it what the plain one finds.
+template <typename Runner>
+void compare_with_plain() {
     for (const std::size_t count : {1u, 33u, 512u, 5000u, 70'001u}) {
         const auto points = walls(count);
-        const auto one = tree_of<plain>(points);
-        const auto other = tree_of<best>(points);
+        const auto one = tree_of<plain_runner>(points);
+        const auto other = tree_of<Runner>(points);
         REQUIRE(one.order == other.order);
         for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / 50) {
             for (const std::uint32_t k : {1u, 30u, 300u}) {
                 if (k > count) { continue; }
                 const vec3<float> q = points[i] + vec3<float>(0, 0.001f, 0);
-                REQUIRE(search<plain>(one, q, k) == search<best>(other, q, k));
+                REQUIRE(search<plain_runner>(one, q, k) == search<Runner>(other, q, k));
             }
         }
     }
 }
 
+}  // namespace
+
+TEST_CASE("kd_build: every instruction set builds the same tree and finds the same") {
+    compare_with_plain<best_runner>();
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx2")) { compare_with_plain<avx2_runner>(); }
+    if (__builtin_cpu_supports("sse4.2")) { compare_with_plain<sse_runner>(); }
+#endif
+}
+
 TEST_CASE("kd_build: boxes are tight and every leaf but the last is full") {
     const auto points = walls(20'000);
-    const auto tree = tree_of<simd::best<float>>(points);
+    const auto tree = tree_of<best_runner>(points);
     for (int level = 1; level <= tree.height; ++level) {
         const auto below = static_cast<std::uint32_t>(detail::kd_capacity(level - 1));
         for (std::uint32_t child = 0; child * below < tree.size; ++child) {

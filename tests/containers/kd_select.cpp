@@ -1,5 +1,6 @@
 #include <aglow/containers/kd_median.hpp>
 #include <aglow/containers/kd_select.hpp>
+#include <aglow/core/simd_best.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -40,51 +41,67 @@ std::vector<std::uint32_t> ranks(std::uint32_t count) {
     return all;
 }
 
+struct kth_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline T run(std::vector<T> numbers, std::uint32_t k, T bound) {
+        const auto count = static_cast<std::uint32_t>(numbers.size());
+        std::vector<T> spare(count + simd::lanes);
+        std::vector<T> other(count + simd::lanes);
+        numbers.resize(count + simd::lanes);
+        return detail::kth_smallest<P>(numbers.data(), count, k, bound, spare.data(), other.data());
+    }
+};
+
+struct median_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline detail::kd_rank<T> run(std::vector<T> numbers, std::uint32_t k) {
+        const auto count = static_cast<std::uint32_t>(numbers.size());
+        const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
+        const T least = *low;
+        const T most = *high;
+        numbers.resize(count + simd::lanes, std::numeric_limits<T>::max());
+        detail::kd_room<T> room{count};
+        return detail::find_median<P>(room, numbers.data(), count, k, least, most);
+    }
+};
+
 }  // namespace
 
-TEMPLATE_TEST_CASE("kd_select: the k-th smallest is what sorting finds", "[kd_tree]", simd::best<float>,
-                   simd::plain<float>, simd::plain<double>) {
-    using T = typename TestType::scalar;
+TEMPLATE_TEST_CASE("kd_select: the k-th smallest is what sorting finds", "[kd_tree]", float, double) {
+    using T = TestType;
     for (const std::string& how : ways) {
         for (const std::uint32_t count : counts) {
             const auto numbers = spread<T>(how, count, count);
             auto sorted = numbers;
             std::sort(sorted.begin(), sorted.end());
-            std::vector<T> spare(count + simd::lanes);
-            std::vector<T> other(count + simd::lanes);
             for (const std::uint32_t k : ranks(count)) {
                 for (const T bound : {T(1), T(1e9)}) {
-                    auto copy = numbers;
-                    copy.resize(count + simd::lanes);
                     CAPTURE(how, count, k, bound);
-                    REQUIRE(detail::kth_smallest<TestType>(copy.data(), count, k, bound, spare.data(), other.data()) ==
-                            sorted[k - 1]);
+                    REQUIRE(simd::run_best<T, kth_kernel>(numbers, k, bound) == sorted[k - 1]);
+                    REQUIRE(kth_kernel::run<simd::plain<T>>(numbers, k, bound) == sorted[k - 1]);
                 }
             }
         }
     }
 }
 
-TEMPLATE_TEST_CASE("kd_median: value, fewer and equal are what counting finds", "[kd_tree]", simd::best<float>,
-                   simd::plain<float>, simd::plain<double>) {
-    using T = typename TestType::scalar;
+TEMPLATE_TEST_CASE("kd_median: value, fewer and equal are what counting finds", "[kd_tree]", float, double) {
+    using T = TestType;
     for (const std::string& how : ways) {
         for (const std::uint32_t count : counts) {
             auto numbers = spread<T>(how, count, 3 * count);
             for (T& x : numbers) { x = 2 * x - 1; }
             auto sorted = numbers;
             std::sort(sorted.begin(), sorted.end());
-            const T low = sorted.front();
-            const T high = sorted.back();
-            numbers.resize(count + simd::lanes, std::numeric_limits<T>::max());
-            detail::kd_median<TestType> find{count};
             for (const std::uint32_t k : ranks(count)) {
                 CAPTURE(how, count, k);
-                const detail::kd_rank<T> rank = find(numbers.data(), count, k, low, high);
-                REQUIRE(rank.value == sorted[k - 1]);
-                const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), rank.value);
-                REQUIRE(rank.less == static_cast<std::uint32_t>(first - sorted.begin()));
-                REQUIRE(rank.equal == static_cast<std::uint32_t>(last - first));
+                const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), sorted[k - 1]);
+                for (const detail::kd_rank<T>& rank :
+                     {simd::run_best<T, median_kernel>(numbers, k), median_kernel::run<simd::plain<T>>(numbers, k)}) {
+                    REQUIRE(rank.value == sorted[k - 1]);
+                    REQUIRE(rank.less == static_cast<std::uint32_t>(first - sorted.begin()));
+                    REQUIRE(rank.equal == static_cast<std::uint32_t>(last - first));
+                }
             }
         }
     }

@@ -14,7 +14,7 @@ namespace aglow::detail {
 
 /// Tight box of the points of a leaf of which `count` are there.
 template <typename P, typename T>
-[[nodiscard]] bounds<T> leaf_box(const kd_leaf<T>& leaf, std::uint32_t count) {
+[[nodiscard, gnu::always_inline]] inline bounds<T> leaf_box(const kd_leaf<T>& leaf, std::uint32_t count) {
     bounds<T> box;
     if (count < kd_leaf_size) {
         for (std::uint32_t i = 0; i < count; ++i) { box.add({leaf.x[i], leaf.y[i], leaf.z[i]}); }
@@ -53,7 +53,7 @@ template <typename T>
 
 /// Sets the boxes of node i of `level`, whose children are finished, and how crowded it is if those are leaves.
 template <typename P, typename T>
-void finish_node(kd_storage<T>& tree, int level, std::uint32_t i) {
+[[gnu::always_inline]] inline void finish_node(kd_storage<T>& tree, int level, std::uint32_t i) {
     kd_node<T>& node = tree.node(level, i);
     const std::uint32_t children = std::min(kd_fan, kd_blocks(tree.size, kd_capacity(level - 1)) - i * kd_fan);
     for (std::uint32_t lane = 0; lane < kd_fan; ++lane) {

@@ -22,67 +22,20 @@ struct kd_rank {
     std::uint32_t less, equal;
 };
 
-/// Finds numbers by rank; keeps the room it needs.
-template <typename P>
-class kd_median {
-    using T = typename P::scalar;
-
+/// Room to find numbers by rank in.
+template <typename T>
+class kd_room {
 public:
-    /// Room for `most` numbers.
-    explicit kd_median(std::uint32_t most) {
-        for (auto& room : rooms_) { room = std::make_unique_for_overwrite<T[]>(most + 2 * simd::lanes); }
-    }
-
-    /// The k-th smallest, k from 1, of `count` numbers in [low, high], of which only whole packs are read: what stands
-    /// behind the last in its pack must sort last.
-    kd_rank<T> operator()(const T* numbers, std::uint32_t count, std::uint32_t k, T low, T high) {
-        std::uint32_t less = 0;
-        for (unsigned round = 0; count > kd_few; ++round) {
-            const bool even = count <= sample_from && round < 6;
-            const auto [from, to] = even ? expected(count, k, low, high) : sampled(numbers, count, k);
-            T* inside = rooms_[round % 2].get();
-            kd_bracket cut;
-            if (from < to) {
-                cut = cut_bracket<P>(numbers, count, from, to, inside);
-                if (k <= cut.below) {
-                    cut = cut_bracket<P>(numbers, count, lowest, from, inside);
-                } else if (k > cut.below + cut.inside) {
-                    cut = cut_bracket<P>(numbers, count, to, highest, inside);
-                }
-            } else {
-                const kd_rank<T> tie = rank_of(numbers, count, from, less);
-                const std::uint32_t below = tie.less - less;
-                if (below < k && k <= below + tie.equal) { return tie; }
-                cut = k <= below ? cut_bracket<P>(numbers, count, lowest, from, inside)
-                                 : cut_above(numbers, count, from, inside);
-            }
-            less += cut.below;
-            k -= cut.below;
-            count = cut.inside;
-            numbers = inside;
-            pad<P>(inside, count);
-            if (count > kd_few) { std::tie(low, high) = range_of<P>(numbers, count); }
-        }
-        return rank_of(numbers, count, kth_by_pairs<P>(numbers, count, k), less);
-    }
-
-private:
-    static constexpr T lowest = std::numeric_limits<T>::lowest();
-    static constexpr T highest = std::numeric_limits<T>::max();
     static constexpr std::uint32_t most_samples = 1024;
-    static constexpr std::uint32_t sample_from = 4096;
 
-    /// Two numbers between which the k-th is likely to lie if all are even in [low, high].
-    static std::array<T, 2> expected(std::uint32_t count, std::uint32_t k, T low, T high) {
-        const T n = static_cast<T>(count);
-        const T rank = static_cast<T>(k) - T(0.5);
-        const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 1;
-        const T step = (high - low) / n;
-        return {std::max(low, low + step * (rank - slack)), std::min(high, low + step * (rank + slack))};
+    /// Room for `most` numbers.
+    explicit kd_room(std::uint32_t most) {
+        for (auto& half : halves_) { half = std::make_unique_for_overwrite<T[]>(most + 2 * simd::lanes); }
     }
+    [[nodiscard]] T* half(unsigned round) { return halves_[round % 2].get(); }
 
-    /// Two numbers of a sample between which the k-th is likely to lie.
-    std::array<T, 2> sampled(const T* numbers, std::uint32_t count, std::uint32_t k) {
+    /// Two numbers of a sample between which the k-th of many is likely to lie.
+    [[gnu::noinline]] std::array<T, 2> sampled(const T* numbers, std::uint32_t count, std::uint32_t k) {
         const std::uint32_t samples = count >= 64 * most_samples ? most_samples : count >= 2048 ? 256 : kd_few;
         const std::uint32_t step = count / samples;
         for (std::uint32_t i = 0; i < samples; ++i) { sample_[i] = numbers[i * step + step / 2]; }
@@ -95,34 +48,86 @@ private:
         return {sample_[clamp(samples * share - slack) - 1], sample_[clamp(samples * share + slack) - 1]};
     }
 
-    static kd_rank<T> rank_of(const T* numbers, std::uint32_t count, T value, std::uint32_t less) {
-        kd_rank<T> rank{value, less, 0};
-        const P pivot = P::all(value);
-        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
-            const P v = P::load(numbers + i);
-            rank.less += static_cast<std::uint32_t>(std::popcount(P::less(v, pivot)));
-            rank.equal += static_cast<std::uint32_t>(std::popcount(P::equal(v, pivot)));
-        }
-        return rank;
-    }
-
-    /// Copies the numbers larger than `value`.
-    static kd_bracket cut_above(const T* numbers, std::uint32_t count, T value, T* to) {
-        kd_bracket cut{0, 0};
-        const P pivot = P::all(value);
-        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
-            const P v = P::load(numbers + i);
-            const std::uint32_t here = count - i < simd::lanes ? (1u << (count - i)) - 1 : 0xffffu;
-            const std::uint32_t above = P::less(pivot, v) & here;
-            P::compress(to + cut.inside, v, above);
-            cut.inside += static_cast<std::uint32_t>(std::popcount(above));
-            cut.below += static_cast<std::uint32_t>(std::popcount(here & ~above));
-        }
-        return cut;
-    }
-
-    std::array<std::unique_ptr<T[]>, 2> rooms_;
-    std::array<T, most_samples + simd::lanes> sample_;
+private:
+    std::array<std::unique_ptr<T[]>, 2> halves_;
+    std::array<T, most_samples> sample_;
 };
+
+/// Two numbers between which the k-th is likely to lie if all are even in [low, high].
+template <typename T>
+[[nodiscard]] std::array<T, 2> expected(std::uint32_t count, std::uint32_t k, T low, T high) {
+    const T n = static_cast<T>(count);
+    const T rank = static_cast<T>(k) - T(0.5);
+    const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 1;
+    const T step = (high - low) / n;
+    return {std::max(low, low + step * (rank - slack)), std::min(high, low + step * (rank + slack))};
+}
+
+template <typename P, typename T>
+[[nodiscard, gnu::always_inline]] inline kd_rank<T> rank_of(const T* numbers, std::uint32_t count, T value,
+                                                            std::uint32_t less) {
+    kd_rank<T> rank{value, less, 0};
+    const P pivot = P::all(value);
+    for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+        const P v = P::load(numbers + i);
+        rank.less += static_cast<std::uint32_t>(std::popcount(P::less(v, pivot)));
+        rank.equal += static_cast<std::uint32_t>(std::popcount(P::equal(v, pivot)));
+    }
+    return rank;
+}
+
+/// Copies the numbers larger than `value` to `to` and counts the others.
+template <typename P, typename T>
+[[gnu::always_inline]] inline kd_bracket cut_above(const T* numbers, std::uint32_t count, T value, T* to) {
+    kd_bracket cut{0, 0};
+    const P pivot = P::all(value);
+    for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+        const P v = P::load(numbers + i);
+        const std::uint32_t here = count - i < simd::lanes ? (1u << (count - i)) - 1 : 0xffffu;
+        const std::uint32_t above = P::less(pivot, v) & here;
+        P::compress(to + cut.inside, v, above);
+        cut.inside += static_cast<std::uint32_t>(std::popcount(above));
+        cut.below += static_cast<std::uint32_t>(std::popcount(here & ~above));
+    }
+    return cut;
+}
+
+/// The k-th smallest, k from 1, of `count` numbers in [low, high], of which only whole packs are read: what stands
+/// behind the last in its pack must sort last.
+template <typename P, typename T>
+[[gnu::always_inline]] inline kd_rank<T> find_median(kd_room<T>& room, const T* numbers, std::uint32_t count,
+                                                     std::uint32_t k, T low, T high) {
+    constexpr T lowest = std::numeric_limits<T>::lowest();
+    constexpr T highest = std::numeric_limits<T>::max();
+    constexpr std::uint32_t sample_from = 4096;
+    std::uint32_t less = 0;
+    for (unsigned round = 0; count > kd_few; ++round) {
+        const bool even = count <= sample_from && round < 6;
+        const auto [from, to] = even ? expected(count, k, low, high) : room.sampled(numbers, count, k);
+        T* inside = room.half(round);
+        kd_bracket cut;
+        if (from < to) {
+            cut = cut_bracket<P>(numbers, count, from, to, inside);
+            if (k <= cut.below) {
+                cut = cut_bracket<P>(numbers, count, lowest, from, inside);
+            } else if (k > cut.below + cut.inside) {
+                cut = cut_bracket<P>(numbers, count, to, highest, inside);
+            }
+        } else {
+            const kd_rank<T> tie = rank_of<P>(numbers, count, from, less);
+            const std::uint32_t below = tie.less - less;
+            if (below < k && k <= below + tie.equal) { return tie; }
+            cut = k <= below ? cut_bracket<P>(numbers, count, lowest, from, inside)
+                             : cut_above<P>(numbers, count, from, inside);
+        }
+        less += cut.below;
+        k -= cut.below;
+        count = cut.inside;
+        numbers = inside;
+        pad<P>(inside, count);
+        if (count > kd_few) { std::tie(low, high) = range_of<P>(numbers, count); }
+    }
+    return rank_of<P>(numbers, count, kth_by_pairs<P>(numbers, count, k), less);
+}
 
 }  // namespace aglow::detail

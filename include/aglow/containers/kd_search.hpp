@@ -29,34 +29,39 @@ struct kd_probe {
     std::uint32_t listed;
     vec3<T> place;
     bool at_home;
-    int level;
+    /// Where the search stands, and where it started.
+    int level, top;
     std::array<std::uint32_t, kd_max_height + 1> home, count, next;
     alignas(64) T path[kd_max_height + 1][kd_fan];
     std::uint32_t open[kd_max_height + 1][kd_stride * kd_fan + simd::lanes];
 };
 
+/// How far `at` lies outside each of sixteen intervals.
+template <typename P, typename T>
+[[nodiscard, gnu::always_inline]] inline P outside(const T* low, const T* high, T at) {
+    const P here = P::all(at);
+    return P::max(P::max(P::sub(P::load(low), here), P::sub(here, P::load(high))), P::all(T(0)));
+}
+
 /// Squared distances from a point to the sixteen boxes of a node. Rounded as those of points are, so none is larger
 /// than that of a point in the box.
 template <typename P, typename T>
-[[nodiscard]] P box_distances2(const kd_node<T>& node, const vec3<T>& point) {
-    const auto outside = [](const T* low, const T* high, T at) {
-        const P here = P::all(at);
-        return P::max(P::max(P::sub(P::load(low), here), P::sub(here, P::load(high))), P::all(T(0)));
-    };
-    return P::length2(outside(node.low_x, node.high_x, point.x), outside(node.low_y, node.high_y, point.y),
-                      outside(node.low_z, node.high_z, point.z));
+[[nodiscard, gnu::always_inline]] inline P box_distances2(const kd_node<T>& node, const vec3<T>& point) {
+    return P::length2(outside<P>(node.low_x, node.high_x, point.x), outside<P>(node.low_y, node.high_y, point.y),
+                      outside<P>(node.low_z, node.high_z, point.z));
 }
 
 /// Squared distances to the sixteen points of a leaf from place `at` on.
 template <typename P, typename T>
-[[nodiscard]] P point_distances2(const kd_leaf<T>& leaf, std::uint32_t at, const vec3<T>& point) {
+[[nodiscard, gnu::always_inline]] inline P point_distances2(const kd_leaf<T>& leaf, std::uint32_t at,
+                                                            const vec3<T>& point) {
     return P::length2(P::sub(P::load(leaf.x + at), P::all(point.x)), P::sub(P::load(leaf.y + at), P::all(point.y)),
                       P::sub(P::load(leaf.z + at), P::all(point.z)));
 }
 
 /// Goes one level down towards the nearest box and keeps the distances it saw.
 template <typename P, typename T>
-void step_home(const kd_storage<T>& tree, kd_probe<T>& probe, std::size_t level) {
+[[gnu::always_inline]] inline void step_home(const kd_storage<T>& tree, kd_probe<T>& probe, std::size_t level) {
     const std::uint32_t node = probe.home[level];
     const P d = box_distances2<P>(tree.node(static_cast<int>(level), node), probe.point);
     P::store(probe.path[level], d);
@@ -66,7 +71,7 @@ void step_home(const kd_storage<T>& tree, kd_probe<T>& probe, std::size_t level)
 
 /// Finds the leaf nearest to the point, greedily, and the distances on the way.
 template <typename P, typename T>
-void go_home(const kd_storage<T>& tree, kd_probe<T>& probe) {
+[[gnu::always_inline]] inline void go_home(const kd_storage<T>& tree, kd_probe<T>& probe) {
     auto level = static_cast<std::size_t>(tree.height);
     probe.home[level] = 0;
     for (; level > 0; --level) { step_home<P>(tree, probe, level); }
@@ -88,7 +93,8 @@ template <typename T>
 
 /// Squared radius within which about k points are expected, and a few more, so that it seldom holds fewer.
 template <typename P, typename T>
-[[nodiscard]] T guess_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe, std::uint32_t k) {
+[[nodiscard, gnu::always_inline]] inline T guess_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe,
+                                                         std::uint32_t k) {
     const T wanted = static_cast<T>(k) + 3 * std::sqrt(static_cast<T>(k)) + 1;
     const T root = std::cbrt(wanted * wanted);
     const kd_crowd<T>& crowd = tree.crowds[probe.home[1]];
@@ -105,12 +111,14 @@ void prefetch_all(const U& what) {
     for (std::size_t i = 0; i < sizeof(U); i += 64) { simd::prefetch(reinterpret_cast<const char*>(&what) + i); }
 }
 
+/// Stands a search before a node of `level`.
 template <typename T>
-void start(const kd_storage<T>& tree, kd_probe<T>& probe) {
-    const auto top = static_cast<std::size_t>(tree.height);
-    probe.level = tree.height;
+void start(kd_probe<T>& probe, int level, std::uint32_t node) {
+    const auto top = static_cast<std::size_t>(level);
+    probe.top = level;
+    probe.level = level;
     probe.listed = 0;
-    probe.open[top][0] = 0;
+    probe.open[top][0] = node;
     probe.count[top] = 1;
     probe.next[top] = 0;
 }
@@ -135,7 +143,7 @@ std::uint32_t thin_out(const kd_node<T>& node, kd_probe<T>& probe, std::uint32_t
 
 /// Opens up to kd_stride nodes of the probe's level: their children closer than `bound` become the next level's list.
 template <typename P, typename T>
-void open_nodes(const kd_storage<T>& tree, kd_probe<T>& probe, T bound) {
+[[gnu::always_inline]] inline void open_nodes(const kd_storage<T>& tree, kd_probe<T>& probe, T bound) {
     const auto level = static_cast<std::size_t>(probe.level--);
     const std::uint32_t last = std::min(probe.count[level], probe.next[level] + kd_stride);
     const P limit = P::all(bound);
@@ -160,11 +168,11 @@ void open_nodes(const kd_storage<T>& tree, kd_probe<T>& probe, T bound) {
 
 /// Opens nodes until some of level `goal` are listed, in ascending order; false when there are no more.
 template <typename P, typename T>
-bool advance(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, int goal) {
+[[gnu::always_inline]] inline bool advance(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, int goal) {
     for (;;) {
         const auto level = static_cast<std::size_t>(probe.level);
         if (probe.next[level] == probe.count[level]) {
-            if (probe.level == tree.height) { return false; }
+            if (probe.level == probe.top) { return false; }
             ++probe.level;
         } else if (probe.level <= goal) {
             return true;
@@ -184,7 +192,7 @@ struct kd_list {
 
 /// Adds the points of the listed leaves that are closer than `bound`, until all leaves are done or the room is.
 template <typename P, typename T>
-void scan(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, kd_list<T>& found) {
+[[gnu::always_inline]] inline void scan(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, kd_list<T>& found) {
     const P limit = P::all(bound);
     std::uint32_t count = found.count;
     for (; probe.next[0] < probe.count[0] && count + kd_leaf_size <= found.room; ++probe.next[0]) {
@@ -214,44 +222,25 @@ void prefetch_listed(const kd_storage<T>& tree, const kd_probe<T>& probe, int le
     }
 }
 
-}  // namespace aglow::detail
-
-namespace aglow {
-
-/// Accepts every item.
-struct kd_accept_all {
-    template <typename... Slot>
-    constexpr bool operator()(Slot...) const {
-        return true;
-    }
+/// The caller's word on what may be found, behind pointers that no kernel sees through; none of them: all may.
+template <typename T>
+struct kd_filter {
+    void* caller{nullptr};
+    /// Takes out the candidates from `first` on that the caller does not accept.
+    void (*refuse)(void* caller, kd_candidates<T>& found, std::uint32_t first){nullptr};
+    bool (*accepts)(void* caller, std::uint32_t slot){nullptr};
 };
 
-}  // namespace aglow
-
-namespace aglow::detail {
-
-/// Takes out the candidates from `first` on that the caller does not accept.
-template <typename T, typename Accept>
-void reject(kd_candidates<T>& found, std::uint32_t first, Accept& accept) {
-    std::uint32_t kept = first;
-    for (std::uint32_t i = first; i < found.count; ++i) {
-        found.distances2[kept] = found.distances2[i];
-        found.slots[kept] = found.slots[i];
-        kept += accept(found.slots[i]) ? 1u : 0u;
-    }
-    found.count = kept;
-}
-
 /// Collects what is closer than `bound`, or the k nearest of it where that is much more than k.
-template <typename P, typename T, typename Accept>
-void collect(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T bound, kd_candidates<T>& found,
-             Accept& accept) {
+template <typename P, typename T>
+[[gnu::always_inline]] inline void collect(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T bound,
+                                           kd_candidates<T>& found, const kd_filter<T>& filter) {
     while (advance<P>(tree, probe, bound, 0)) {
         const std::uint32_t before = found.count;
         kd_list<T> list{found.distances2.data(), found.slots.data(), before, found.capacity()};
         scan<P>(tree, probe, bound, list);
         found.count = list.count;
-        if constexpr (!std::is_same_v<std::remove_cv_t<Accept>, kd_accept_all>) { reject(found, before, accept); }
+        if (filter.refuse != nullptr) { filter.refuse(filter.caller, found, before); }
         if (found.count + kd_leaf_size > found.capacity()) {
             bound = std::min(bound, simd::next_above(keep_nearest<P>(tree, found, k, bound)));
         }
@@ -280,8 +269,9 @@ template <typename P, typename T>
 
 /// The radius to try after one that held too few.
 template <typename P, typename T>
-[[nodiscard]] T larger_radius2(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, std::uint32_t had,
-                               int attempt, T radius2, T limit) {
+[[nodiscard, gnu::always_inline]] inline T larger_radius2(const kd_storage<T>& tree, kd_probe<T>& probe,
+                                                          std::uint32_t k, std::uint32_t had, int attempt, T radius2,
+                                                          T limit) {
     if (attempt == 0 && had * 4 >= k && had > 0) {
         const T wanted = static_cast<T>(k) + 2 * std::sqrt(static_cast<T>(k)) + 1;
         return radius2 * (T(1.25) * wanted / static_cast<T>(had));
@@ -292,17 +282,17 @@ template <typename P, typename T>
 
 /// Finds the k nearest accepted points closer than `limit`, starting with a radius of about `radius2`; returns the
 /// distance2 of the k-th, or `limit` when there are fewer. The probe stands at its start.
-template <typename P, typename T, typename Accept>
-T find_nearest(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T radius2, T limit,
-               kd_candidates<T>& found, Accept& accept) {
+template <typename P, typename T>
+[[gnu::always_inline]] inline T find_nearest(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T radius2,
+                                             T limit, kd_candidates<T>& found, const kd_filter<T>& filter) {
     for (int attempt = 0;; ++attempt) {
         radius2 = std::min(radius2, limit);
         found.count = 0;
-        collect<P>(tree, probe, k, radius2, found, accept);
+        collect<P>(tree, probe, k, radius2, found, filter);
         if (found.count >= k) { return keep_nearest<P>(tree, found, k, radius2); }
         if (radius2 >= limit || attempt > kd_max_height) { return limit; }
         radius2 = larger_radius2<P>(tree, probe, k, found.count, attempt, radius2, limit);
-        start(tree, probe);
+        start(probe, tree.height, 0);
     }
 }
 

@@ -19,13 +19,13 @@ inline constexpr std::uint32_t kd_few = 32;
 
 /// Fills the sixteen places behind `count` numbers with what sorts last.
 template <typename P, typename T>
-void pad(T* numbers, std::uint32_t count) {
+[[gnu::always_inline]] inline void pad(T* numbers, std::uint32_t count) {
     P::store(numbers + count, P::all(std::numeric_limits<T>::max()));
 }
 
 /// The k-th smallest, k from 1, of padded numbers.
 template <typename P, typename T>
-[[nodiscard]] T kth_by_pairs(const T* numbers, std::uint32_t count, std::uint32_t k) {
+[[nodiscard, gnu::always_inline]] inline T kth_by_pairs(const T* numbers, std::uint32_t count, std::uint32_t k) {
     T kth = numbers[0];
     bool first = true;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ struct kd_bracket {
 
 /// Copies the padded numbers in [low, high) to `to` and counts those below.
 template <typename P, typename T>
-kd_bracket cut_bracket(const T* numbers, std::uint32_t count, T low, T high, T* to) {
+[[gnu::always_inline]] inline kd_bracket cut_bracket(const T* numbers, std::uint32_t count, T low, T high, T* to) {
     const P low16 = P::all(low);
     const P high16 = P::all(high);
     kd_bracket cut{0, 0};
@@ -65,7 +65,7 @@ kd_bracket cut_bracket(const T* numbers, std::uint32_t count, T low, T high, T* 
 
 /// The smallest and the largest of numbers padded with what sorts last.
 template <typename P, typename T>
-[[nodiscard]] std::pair<T, T> range_of(const T* numbers, std::uint32_t count) {
+[[nodiscard, gnu::always_inline]] inline std::pair<T, T> range_of(const T* numbers, std::uint32_t count) {
     P low = P::load(numbers);
     P high = P::all(numbers[0]);
     for (std::uint32_t i = 0; i + simd::lanes <= count; i += simd::lanes) {
@@ -80,10 +80,19 @@ template <typename P, typename T>
     return range;
 }
 
+/// The k-th smallest of any numbers, by way of a copy.
+template <typename T>
+[[nodiscard, gnu::noinline]] T kth_by_moving(const T* numbers, std::uint32_t count, std::uint32_t k, T* copy) {
+    std::copy(numbers, numbers + count, copy);
+    std::nth_element(copy, copy + (k - 1), copy + count);
+    return copy[k - 1];
+}
+
 /// The k-th smallest, k from 1, of numbers in [0, bound), which must be roughly even to be fast.
 /// `numbers` and the two spares have room for sixteen more.
 template <typename P, typename T>
-[[nodiscard]] T kth_smallest(T* numbers, std::uint32_t count, std::uint32_t k, T bound, T* spare, T* other) {
+[[nodiscard, gnu::always_inline]] inline T kth_smallest(T* numbers, std::uint32_t count, std::uint32_t k, T bound,
+                                                        T* spare, T* other) {
     T low = 0;
     T high = bound;
     pad<P>(numbers, count);
@@ -118,9 +127,7 @@ template <typename P, typename T>
         std::swap(spare, other);
     }
     if (count <= kd_few) { return kth_by_pairs<P>(numbers, count, k); }
-    std::copy(numbers, numbers + count, spare);
-    std::nth_element(spare, spare + (k - 1), spare + count);
-    return spare[k - 1];
+    return kth_by_moving(numbers, count, k, spare);
 }
 
 /// What a search found so far, in ascending order of slots.
@@ -142,7 +149,7 @@ struct kd_candidates {
 
 /// Keeps the candidates closer than `bound`.
 template <typename P, typename T>
-void keep_below(kd_candidates<T>& found, T bound) {
+[[gnu::always_inline]] inline void keep_below(kd_candidates<T>& found, T bound) {
     const P limit = P::all(bound);
     pad<P>(found.distances2.data(), found.count);
     std::uint32_t kept = 0;
@@ -158,7 +165,7 @@ void keep_below(kd_candidates<T>& found, T bound) {
 
 /// Keeps k of the candidates, which are no farther than `farthest`: of those just as far, the lowest by rank.
 template <typename T>
-void break_ties(const kd_storage<T>& tree, kd_candidates<T>& found, T farthest, std::uint32_t k) {
+[[gnu::noinline]] void break_ties(const kd_storage<T>& tree, kd_candidates<T>& found, T farthest, std::uint32_t k) {
     found.ranks.clear();
     for (std::uint32_t i = 0; i < found.count; ++i) {
         if (found.distances2[i] == farthest) { found.ranks.push_back(tree.rank(found.slots[i])); }
@@ -180,7 +187,8 @@ void break_ties(const kd_storage<T>& tree, kd_candidates<T>& found, T farthest, 
 
 /// Keeps the k nearest of at least k candidates, all closer than `bound`, and returns the distance2 of the k-th.
 template <typename P, typename T>
-T keep_nearest(const kd_storage<T>& tree, kd_candidates<T>& found, std::uint32_t k, T bound) {
+[[gnu::always_inline]] inline T keep_nearest(const kd_storage<T>& tree, kd_candidates<T>& found, std::uint32_t k,
+                                             T bound) {
     const T farthest =
         kth_smallest<P>(found.distances2.data(), found.count, k, bound, found.spare.data(), found.other.data());
     keep_below<P>(found, simd::next_above(farthest));

@@ -8,12 +8,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <ranges>
 #include <span>
@@ -23,8 +22,8 @@
 
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_cloud.hpp>
+#include <aglow/containers/kd_kernels.hpp>
 #include <aglow/containers/kd_layout.hpp>
-#include <aglow/containers/kd_nearest_one.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/numbers.hpp>
@@ -75,6 +74,14 @@ class kd_scratch {
     friend class kd_tree;
     std::vector<detail::kd_probe<T>> probes_{1};
     detail::kd_candidates<T> found_;
+};
+
+/// Accepts every item.
+struct kd_accept_all {
+    template <typename... Slot>
+    constexpr bool operator()(Slot...) const {
+        return true;
+    }
 };
 
 /// Something that says whether the item of a slot may be found: `accept(slot)`. It is asked only about items within
@@ -149,30 +156,58 @@ public:
     void within(const vec3<T>& point, T radius2, Visit&& visit) const;
 
 private:
-    using pack = simd::best<T>;
     static constexpr std::size_t group = 8;
+    using task = detail::kd_task<T>;
 
-    /// What a search for k within a reach comes down to; `count` is 0 where nothing can be found.
-    struct task {
-        std::uint32_t count;
-        T limit;
-    };
+    /// What a search comes down to; `count` is 0 where nothing can be found.
     [[nodiscard]] task task_of(std::size_t k, kd_reach<T> reach) const {
         const T limit = std::min(reach.radius2, std::numeric_limits<T>::max());
-        return {limit > 0 ? static_cast<std::uint32_t>(std::min<std::size_t>(k, size())) : 0, limit};
+        const auto count = limit > 0 ? static_cast<std::uint32_t>(std::min<std::size_t>(k, size())) : 0;
+        return {count, limit, reach.hint2};
     }
+    template <typename Kernel, typename... Arguments>
+    static auto run(Arguments&&... arguments) {
+        return detail::kd_best_runner<T>::template run<Kernel>(arguments...);
+    }
+
+    template <typename Accept>
+    static constexpr bool accepts_all = std::is_same_v<std::remove_cvref_t<Accept>, kd_accept_all>;
+
     /// Of a thousand points at one place a search for k can use k, unless it may refuse them.
     template <typename Accept>
     static std::uint32_t enough(task what) {
-        constexpr bool all = std::is_same_v<std::remove_cvref_t<Accept>, kd_accept_all>;
-        return all ? what.count : std::numeric_limits<std::uint32_t>::max();
+        return accepts_all<Accept> ? what.count : std::numeric_limits<std::uint32_t>::max();
     }
-    [[nodiscard]] T guess(const detail::kd_probe<T>& probe, task what, kd_reach<T> reach) const;
-    /// Brings searches side by side to where their leaves are listed and asked for.
-    void approach(std::span<detail::kd_probe<T>> probes, task what, kd_reach<T> reach, std::span<T> radius2) const;
     template <typename Accept>
-    kd_neighbours<T> finish(detail::kd_probe<T>& probe, task what, T radius2, kd_reach<T> reach, std::size_t k,
-                            detail::kd_candidates<T>& found, Accept& accept) const;
+    [[gnu::noinline]] static void refuse(void* caller, detail::kd_candidates<T>& found, std::uint32_t first) {
+        Accept& accept = *static_cast<Accept*>(caller);
+        std::uint32_t kept = first;
+        for (std::uint32_t i = first; i < found.count; ++i) {
+            found.distances2[kept] = found.distances2[i];
+            found.slots[kept] = found.slots[i];
+            kept += accept(found.slots[i]) ? 1u : 0u;
+        }
+        found.count = kept;
+    }
+    template <typename Accept>
+    [[gnu::noinline]] static bool accepts(void* caller, std::uint32_t slot) {
+        return (*static_cast<Accept*>(caller))(slot);
+    }
+    /// `accept` as the search takes it. The search leaves it where it is.
+    template <typename Accept>
+    static detail::kd_filter<T> filter_of(Accept& accept) {
+        if constexpr (accepts_all<Accept>) {
+            return {};
+        } else {
+            void* caller = const_cast<void*>(static_cast<const void*>(std::addressof(accept)));
+            return {caller, &refuse<Accept>, &accepts<Accept>};
+        }
+    }
+    static kd_neighbours<T> view(const detail::kd_candidates<T>& found, std::size_t k, T farthest, kd_reach<T> reach) {
+        return {{found.slots.data(), found.count},
+                {found.distances2.data(), found.count},
+                found.count < k ? reach.radius2 : farthest};
+    }
 
     detail::kd_storage<T> tree_;
     std::size_t dropped_{0};
@@ -192,7 +227,7 @@ template <std::ranges::random_access_range Items, typename Position, Executor E>
         dropped_ = count - kept;
         detail::kd_cloud<T> spare{kept};
         tree_.shape(kept);
-        if (kept > 0) { detail::kd_builder<pack>{tree_, cloud, spare}.build(run); }
+        if (kept > 0) { detail::kd_builder<T>{tree_, cloud, spare}.build(run); }
     }
 
 template <typename T>
@@ -214,23 +249,6 @@ std::size_t kd_tree<T>::memory() const {
 }
 
 template <typename T>
-T kd_tree<T>::guess(const detail::kd_probe<T>& probe, task what, kd_reach<T> reach) const {
-    const T radius2 = reach.hint2 > 0 ? reach.hint2 * (1 + T(2.6) / std::sqrt(static_cast<T>(what.count)))
-                                      : detail::guess_radius2<pack>(tree_, probe, what.count);
-    return std::max(radius2, std::numeric_limits<T>::min());
-}
-
-template <typename T>
-template <typename Accept>
-kd_neighbours<T> kd_tree<T>::finish(detail::kd_probe<T>& probe, task what, T radius2, kd_reach<T> reach, std::size_t k,
-                                    detail::kd_candidates<T>& found, Accept& accept) const {
-    const T farthest = detail::find_nearest<pack>(tree_, probe, what.count, radius2, what.limit, found, accept);
-    return {{found.slots.data(), found.count},
-            {found.distances2.data(), found.count},
-            found.count < k ? reach.radius2 : farthest};
-}
-
-template <typename T>
 template <KdAccept Accept>
 kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
                                      Accept&& accept) const {
@@ -240,13 +258,10 @@ kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scr
     detail::kd_probe<T>& probe = scratch.probes_.front();
     probe.point = point;
     probe.enough = enough<Accept>(what);
-    probe.at_home = !(reach.hint2 > 0);
-    if (probe.at_home) { detail::go_home<pack>(tree_, probe); }
-    detail::start(tree_, probe);
-    return finish(probe, what, guess(probe, what, reach), reach, k, scratch.found_, accept);
+    const T farthest = run<detail::nearest_kernel>(tree_, probe, what, scratch.found_, filter_of(accept));
+    return view(scratch.found_, k, farthest, reach);
 }
 
-// Eight searches go step by step together: while one waits for memory the others compute.
 template <typename T>
 template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit, std::predicate<std::size_t, kd_slot> Accept>
 void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
@@ -260,49 +275,18 @@ void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scra
     scratch.probes_.resize(group);
     std::array<T, group> radius2;
     for (std::size_t first = 0; first < points.size(); first += group) {
-        const std::size_t count = std::min(group, points.size() - first);
-        const std::span<detail::kd_probe<T>> probes{scratch.probes_.data(), count};
-        for (std::size_t i = 0; i < count; ++i) {
+        const std::span<detail::kd_probe<T>> probes{scratch.probes_.data(), std::min(group, points.size() - first)};
+        for (std::size_t i = 0; i < probes.size(); ++i) {
             probes[i].point = points[first + i];
             probes[i].enough = enough<Accept>(what);
         }
-        approach(probes, what, reach, radius2);
-        for (std::size_t i = 0; i < count; ++i) {
-            if constexpr (std::is_same_v<std::remove_cvref_t<Accept>, kd_accept_all>) {
-                visit(first + i, finish(probes[i], what, radius2[i], reach, k, scratch.found_, accept));
-            } else {
-                const auto accepts = [&](kd_slot slot) { return accept(first + i, slot); };
-                visit(first + i, finish(probes[i], what, radius2[i], reach, k, scratch.found_, accepts));
-            }
+        run<detail::approach_kernel>(tree_, probes, what, std::span<T>{radius2});
+        for (std::size_t i = 0; i < probes.size(); ++i) {
+            auto accepts_here = [&, at = first + i](kd_slot slot) { return accept(at, slot); };
+            const auto filter = accepts_all<Accept> ? detail::kd_filter<T>{} : filter_of(accepts_here);
+            const T farthest = run<detail::finish_kernel>(tree_, probes[i], what, radius2[i], scratch.found_, filter);
+            visit(first + i, view(scratch.found_, k, farthest, reach));
         }
-    }
-}
-
-template <typename T>
-void kd_tree<T>::approach(std::span<detail::kd_probe<T>> probes, task what, kd_reach<T> reach,
-                          std::span<T> radius2) const {
-    const bool hinted = reach.hint2 > 0;
-    for (detail::kd_probe<T>& probe : probes) {
-        probe.at_home = !hinted;
-        probe.home[static_cast<std::size_t>(tree_.height)] = 0;
-        detail::start(tree_, probe);
-    }
-    for (int level = hinted ? 0 : tree_.height; level > 0; --level) {
-        for (detail::kd_probe<T>& probe : probes) {
-            detail::step_home<pack>(tree_, probe, static_cast<std::size_t>(level));
-            if (level > 1) {
-                detail::prefetch_all(tree_.node(level - 1, probe.home[static_cast<std::size_t>(level - 1)]));
-            }
-        }
-    }
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        radius2[i] = std::min(guess(probes[i], what, reach), what.limit);
-        detail::advance<pack>(tree_, probes[i], radius2[i], 1);
-        detail::prefetch_listed(tree_, probes[i], 1);
-    }
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        detail::advance<pack>(tree_, probes[i], radius2[i], 0);
-        detail::prefetch_listed(tree_, probes[i], 0);
     }
 }
 
@@ -313,7 +297,9 @@ std::optional<kd_found<T>> kd_tree<T>::nearest_one(const vec3<T>& point, T radiu
     if (what.count == 0) { return std::nullopt; }
     detail::kd_probe<T> probe;
     probe.point = point;
-    const detail::kd_best<T> best = detail::find_nearest_one<pack>(tree_, probe, what.limit, accept);
+    probe.enough = enough<Accept>(what);
+    probe.at_home = true;
+    const auto best = run<detail::nearest_one_kernel>(tree_, probe, what.limit, filter_of(accept));
     if (!best.found) { return std::nullopt; }
     return kd_found<T>{best.slot, best.distance2};
 }
@@ -328,12 +314,11 @@ void kd_tree<T>::within(const vec3<T>& point, T radius2, Visit&& visit) const {
     probe.point = point;
     probe.at_home = false;
     probe.enough = std::numeric_limits<std::uint32_t>::max();
-    detail::start(tree_, probe);
+    detail::start(probe, tree_.height, 0);
     T distances2[room + simd::lanes];
     kd_slot slots[room + simd::lanes];
-    while (detail::advance<pack>(tree_, probe, what.limit, 0)) {
-        detail::kd_list<T> found{distances2, slots, 0, room};
-        detail::scan<pack>(tree_, probe, what.limit, found);
+    detail::kd_list<T> found{distances2, slots, 0, room};
+    while (run<detail::scan_kernel>(tree_, probe, what.limit, found)) {
         for (std::uint32_t i = 0; i < found.count; ++i) { visit(slots[i], distances2[i]); }
     }
 }

@@ -6,9 +6,6 @@
 #include <limits>
 #include <type_traits>
 
-#include <aglow/core/simd_avx2.hpp>
-#include <aglow/core/simd_avx512.hpp>
-#include <aglow/core/simd_sse.hpp>
 #include <aglow/core/vec.hpp>
 
 namespace aglow::simd {
@@ -139,25 +136,5 @@ private:
         }
     }
 };
-
-/// The pack of sixteen `T` that suits the flags of this compilation best.
-template <typename T>
-struct best_pack {
-    using type = plain<T>;
-};
-template <>
-struct best_pack<float> {
-#if defined(__AVX512F__)
-    using type = avx512;
-#elif defined(__AVX2__)
-    using type = avx2;
-#elif defined(__SSE4_1__)
-    using type = sse;
-#else
-    using type = plain<float>;
-#endif
-};
-template <typename T>
-using best = typename best_pack<T>::type;
 
 }  // namespace aglow::simd

@@ -5,10 +5,18 @@
 #include <cstdint>
 #include <limits>
 
-#if defined(__AVX2__)
+#if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 
 #include <aglow/core/simd_tables.hpp>
+
+// Compiled for such machines whatever the flags; only what is compiled for them may call it.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2,bmi,popcnt"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,bmi,popcnt")
+#endif
 
 namespace aglow::simd {
 
@@ -93,4 +101,10 @@ private:
 };
 
 }  // namespace aglow::simd
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
 #endif

@@ -5,10 +5,18 @@
 #include <cstdint>
 #include <limits>
 
-#if defined(__SSE4_1__)
-#include <smmintrin.h>
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
 
 #include <aglow/core/simd_tables.hpp>
+
+// Compiled for such machines whatever the flags; only what is compiled for them may call it.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("sse4.2,popcnt"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("sse4.2,popcnt")
+#endif
 
 namespace aglow::simd {
 
@@ -107,4 +115,10 @@ private:
 };
 
 }  // namespace aglow::simd
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
 #endif
