@@ -147,13 +147,20 @@ TEST_CASE("final_gather: a furnace is 1 / (1 - rho) bright within the error that
     }
 }
 
-TEST_CASE("final_gather: a room of balls is as path tracing sees it, with a caustic map and without") {
+TEST_CASE(
+    "final_gather: a room of balls is as path tracing sees it, with maps of caustics and their reflection, and "
+    "without") {
     const auto room = support::room_with_balls<S, float>({0.7f, 0.5f, 0.3f}, {10, 12, 14});
     const path_tracer traced{room.scene, room.light};
     const final_gathering with_caustics{
         room.scene, room.light, {.photons = {.direct = 5000, .caustic = 20000, .indirect = 40000}, .rays = 16}};
     const final_gathering without{room.scene, room.light, {.photons = {.direct = 5000, .indirect = 40000}, .rays = 16}};
+    const final_gathering with_reflected{
+        room.scene,
+        room.light,
+        {.photons = {.direct = 5000, .caustic = 20000, .indirect = 40000, .reflected = 20000}, .rays = 16}};
     REQUIRE(with_caustics.maps().caustic.status == map_status::full);
+    REQUIRE(with_reflected.maps().reflected.status == map_status::full);
     // A wall; the floor between the balls; the caustic of the glass ball, from below it.
     const vec3<float> eye{0, -0.95f, 0};
     const std::pair<vec3<float>, vec3<float>> looks[] = {
@@ -168,6 +175,10 @@ TEST_CASE("final_gather: a room of balls is as path tracing sees it, with a caus
         CAPTURE(a.mean(), truth.mean(), error.mean(), chance);
         CHECK(std::abs(a.mean() - truth.mean()) <= chance + 0.5 * error.mean());
         CHECK(std::abs(a.mean() - truth.mean()) <= chance + 0.05 * truth.mean());
+        const auto c = bundle(with_reflected, from, to, 800, error);
+        const double chance_c = 4 * std::hypot(c.standard_error(), truth.standard_error());
+        CAPTURE(c.mean(), chance_c);
+        CHECK(std::abs(c.mean() - truth.mean()) <= chance_c + 0.05 * truth.mean());
         // Without the map, gather rays find caustics by chance: noisy, and right in the mean.
         const auto b = bundle(without, from, to, 800, error);
         const double chance_b = 4 * std::hypot(b.standard_error(), truth.standard_error());

@@ -196,8 +196,9 @@ TEST_CASE("path_walk: a terminal answers for diffuse lobes, or lets the path go 
     const support::bulb<S, float> lamp{.intensity = S{1}};
     const ray<float> eye{{0, 0, 0}, {0, 0, 1}};
     int asked = 0;
-    const auto answer = [&](const auto& hit, const vec3<float>& wo, float travelled, float error) {
+    const auto answer = [&](const auto& hit, const vec3<float>& wo, float travelled, float error, bool mirrored) {
         ++asked;
+        CHECK(mirrored);
         CHECK(glm::distance(hit.position, {0, 0, travelled}) < 1e-5f);
         CHECK(wo == vec3<float>{0, 0, -1});
         CHECK(error > 0);

@@ -48,12 +48,14 @@ toy_scene<S, float> open_room() {
 
 }  // namespace
 
-TEST_CASE("photon_walk: a history is caustic until the first smooth bounce, and indirect ever after") {
+TEST_CASE("photon_walk: a history is caustic until the first smooth bounce, reflected until the next, then indirect") {
     using enum photon_history;
     CHECK(after(direct, lobe_set::specular_reflection) == caustic);
     CHECK(after(caustic, lobe_set::specular_transmission) == caustic);
     CHECK(after(direct, lobe_set::diffuse_transmission) == indirect);
-    CHECK(after(caustic, lobe_set::glossy_reflection) == indirect);
+    CHECK(after(caustic, lobe_set::glossy_reflection) == reflected);
+    CHECK(after(reflected, lobe_set::specular_reflection) == reflected);
+    CHECK(after(reflected, lobe_set::diffuse_reflection) == indirect);
     CHECK(after(indirect, lobe_set::specular_reflection) == indirect);
 }
 

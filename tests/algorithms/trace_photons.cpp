@@ -1,7 +1,10 @@
 #include <aglow/algorithms/trace_photons.hpp>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -226,6 +229,28 @@ TEST_CASE("trace_photons: caustic light without a map of its own goes with the i
     const float indirect = total(apart.indirect).x;
     CHECK(caustic > 0.03f * indirect);
     CHECK(total(joined.indirect).x == Approx(caustic + indirect).epsilon(0.02));
+}
+
+TEST_CASE("trace_photons: reflected caustics are some of the indirect photons once more, and need a caustic map") {
+    const auto r = room();
+    const photon_paths paths{.caustic = 50000, .indirect = 50000, .reflected = 50000};
+    const auto maps = trace_photons(r.scene, r.light, {.caustic = 1, .indirect = 1, .reflected = 1, .paths = paths});
+    std::vector<std::array<float, 3>> indirect;
+    for (std::size_t i = 0; i < maps.indirect.size(); ++i) {
+        const auto p = maps.indirect.position(i);
+        indirect.push_back({p.x, p.y, p.z});
+    }
+    std::sort(indirect.begin(), indirect.end());
+    REQUIRE(maps.reflected.size() > 100);
+    CHECK(maps.reflected.size() < maps.indirect.size());
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < maps.reflected.size(); ++i) {
+        const auto p = maps.reflected.position(i);
+        found += std::binary_search(indirect.begin(), indirect.end(), std::array<float, 3>{p.x, p.y, p.z}) ? 1 : 0;
+    }
+    CHECK(found == maps.reflected.size());
+    CHECK(trace_photons(r.scene, r.light, {.indirect = 100, .reflected = 100}).reflected.status ==
+          map_status::left_out);
 }
 
 TEST_CASE("trace_photons: every wall of a room of balls takes in as much light as path tracing says") {

@@ -66,7 +66,9 @@ template <Scene World, typename Eye, Executor Run = in_sequence>
             const std::uint64_t pixel = y * options.width + x;
             for (std::uint32_t i = 0; i < options.looks; ++i) {
                 const sobol_numbers<T> numbers{{options.seed, ~std::uint64_t{0}, pixel}, i};
-                const vec2<T> film{static_cast<T>(x) + T(0.5), static_cast<T>(y) + T(0.5)};
+                // Off the pixel's centre: rays through centres may run along edges, where a record sees both sides.
+                const vec2<T> u = numbers.at(0, purpose::camera).next_2d();
+                const vec2<T> film{static_cast<T>(x) + u.x, static_cast<T>(y) + u.y};
                 const ray<T> here = eye(film);
                 const T share = glm::length(eye(film + vec2<T>{1, 0}).direction - here.direction);
                 detail::look(scene, here, share, numbers, options, mix(options.seed, pixel * options.looks + i),

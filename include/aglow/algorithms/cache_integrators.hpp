@@ -16,14 +16,45 @@
 
 namespace aglow {
 
+/// What gather rays for records bring by path tracing: mirrors are for them to find.
+template <Scene World, Illuminator Lights>
+struct path_reader {
+    const path_tracer<World, Lights>& tracer;
+
+    template <Numbers N>
+    [[nodiscard]] auto operator()(const ray<scalar_of<World>>& r, const N& numbers) const {
+        return tracer.incoming(r, numbers, emission_rule::indirect);
+    }
+};
+
+/// What gather rays for records read from photon maps. Caustics that were reflected once are left out of the rays,
+/// which would find the small bright spots by chance, and added from their own map: evenly, from many photons.
+template <Scene World, Illuminator Lights>
+struct map_reader {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+
+    photon_source<World, Lights> source;
+    emission_rule caustics;
+    const photon_map<S, T>& reflected;
+    density_options density;
+
+    template <Numbers N>
+    [[nodiscard]] auto operator()(const ray<T>& r, const N& numbers) const {
+        return source.incoming(r, numbers, caustics);
+    }
+    [[nodiscard]] S unseen(const gather_point<T>& at) const {
+        return reflected.irradiance(at.position, at.normal, density).value;
+    }
+};
+
 /// Layer: indirect light on diffuse lobes from a cache; where it has no record, from a small gather of its own into
-/// `Source`.
-template <typename Cache, typename Source>
+/// `Reader` (see `IncomingLight`, `KnowsUnseen`).
+template <typename Cache, typename Reader>
 class cache_layer {
 public:
-    cache_layer(const Cache& cache, const Source& source, emission_rule caustics,
-                const hemisphere_shape& fallback = {2, 8})
-        : cache_{cache}, source_{source}, caustics_{caustics}, fallback_{fallback} {}
+    cache_layer(const Cache& cache, Reader reader, const hemisphere_shape& fallback = {2, 8})
+        : cache_{cache}, reader_{reader}, fallback_{fallback} {}
 
     template <Surface H, Numbers N>
     [[nodiscard]] estimate<surface_spectrum<H>> operator()(const H& hit, const vec3<hit_scalar<H>>& wo,
@@ -34,17 +65,16 @@ public:
         return diffuse_radiance(hit, wo, [&](const vec3<T>& side) -> estimate<S> {
             const auto answer = cache_.lookup(vec3<T>(hit.position), side);
             if (answer) { return {answer.irradiance, static_cast<band_of<S>>(answer.error)}; }
-            const auto incoming = [&](const ray<T>& r, const N& n) { return source_.incoming(r, n, caustics_); };
-            const S gathered = gather_once(incoming, gather_point<T>{vec3<T>(hit.position), side, error},
-                                           N{numbers.fork(bounce)}, fallback_);
+            const gather_point<T> here{vec3<T>(hit.position), side, error};
+            S gathered = gather_once(reader_, here, N{numbers.fork(bounce)}, fallback_);
+            if constexpr (KnowsUnseen<Reader, T>) { gathered = gathered + reader_.unseen(here); }
             return {gathered, max_component(gathered) / std::sqrt(static_cast<band_of<S>>(fallback_.count()))};
         });
     }
 
 private:
     const Cache& cache_;
-    const Source& source_;
-    emission_rule caustics_;
+    Reader reader_;
     hemisphere_shape fallback_;
 };
 
@@ -72,10 +102,7 @@ public:
         : scene_{scene}, lights_{lights}, options_{options}, source_{scene, lights, options.paths} {
         irradiance_cache<spectrum, scalar> cache{scene_bounds, options.cache};
         const auto places = cache_candidates(scene, eye, options.view, run);
-        const auto incoming = [this](const ray<scalar>& r, const random_numbers<scalar>& n) {
-            return source_.incoming(r, n, emission_rule::indirect);
-        };
-        filled_ = fill_cache(cache, places, incoming, options.fill, run);
+        filled_ = fill_cache(cache, places, path_reader<World, Lights>{source_}, options.fill, run);
         cache_ = cache.freeze(run);
     }
 
@@ -83,7 +110,7 @@ public:
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
-                               cache_layer{cache_, source_, emission_rule::indirect}};
+                               cache_layer{cache_, path_reader<World, Lights>{source_}}};
         return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
     }
 
@@ -101,8 +128,9 @@ private:
 
 /// What the classical combination is made of.
 struct gather_caching_options {
-    photon_options photons{.direct = 20'000, .caustic = 200'000, .indirect = 100'000};
-    density_options density{};  ///< of the caustic map as it is seen
+    photon_options photons{.direct = 20'000, .caustic = 200'000, .indirect = 100'000, .reflected = 100'000};
+    density_options density{};                        ///< of the caustic map as it is seen
+    density_options reflected_density{.count = 400};  ///< of the map of reflected caustics, read once a record
     irradiance_options irradiance{};
     photon_source_options source{};
     caching_options caching{};
@@ -129,21 +157,16 @@ public:
           base_{scene, lights, options.photons, options.irradiance, run} {
         irradiance_cache<spectrum, scalar> cache{scene_bounds, options.caching.cache};
         const auto places = cache_candidates(scene, eye, options.caching.view, run);
-        const auto reading = source();
-        const auto incoming = [&](const ray<scalar>& r, const random_numbers<scalar>& n) {
-            return reading.incoming(r, n, base_.caustics());
-        };
-        filled_ = fill_cache(cache, places, incoming, options.caching.fill, run);
+        filled_ = fill_cache(cache, places, reader(), options.caching.fill, run);
         cache_ = cache.freeze(run);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
-        const auto reading = source();
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.caching.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
-                               cache_layer{cache_, reading, base_.caustics()}};
+                               cache_layer{cache_, reader()}};
         return layered_integrator{scene_, lights_, layers, options_.caching.paths}(eye, numbers);
     }
 
@@ -153,8 +176,11 @@ public:
     [[nodiscard]] const fill_result& filled() const { return filled_; }
 
 private:
-    [[nodiscard]] photon_source<World, Lights> source() const {
-        return {scene_, lights_, base_.points(), options_.source};
+    [[nodiscard]] map_reader<World, Lights> reader() const {
+        return {{scene_, lights_, base_.points(), options_.source},
+                base_.caustics(),
+                base_.maps().reflected,
+                options_.reflected_density};
     }
 
     const World& scene_;

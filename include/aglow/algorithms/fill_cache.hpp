@@ -71,6 +71,12 @@ struct fill_result {
     bool cancelled{false};
 };
 
+/// A source of incoming light that knows of irradiance which its rays do not bring: `unseen(gather_point)`, W/m².
+template <typename F, typename T>
+concept KnowsUnseen = requires(const F& incoming, const gather_point<T>& at) {
+    incoming.unseen(at);
+};
+
 namespace detail {
 
 /// Fills one cache; see `fill_cache`.
@@ -118,6 +124,11 @@ private:
         return {.gradients = f.gradients || metric != error_metric::nearest_distance,
                 .curvature = metric == error_metric::hessian,
                 .incident = f.incident};
+    }
+
+    /// Adds what no ray brings, where the source of light knows of such.
+    void add_unseen(irradiance_estimate<S, T>& to, const gather_point<T>& at) const {
+        if constexpr (KnowsUnseen<Incoming, T>) { to.irradiance = to.irradiance + incoming_.unseen(at); }
     }
 
     [[nodiscard]] bool full() const {
@@ -198,6 +209,7 @@ private:
                 const candidate& c = candidates_[chosen[i]];
                 const random_numbers<T> numbers{{options_.seed, 0, c.key}};
                 estimates[i] = gather_irradiance(incoming_, c.place, numbers, estimator_, workspace);
+                add_unseen(estimates[i], c.place);
             }
         });
         for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -232,8 +244,8 @@ struct go_on {
 }  // namespace detail
 
 /// Adds records to `cache` until all `candidates` are covered. Candidates are considered in the given order; `incoming`
-/// answers gather rays (see `IncomingLight`). `progress(fill_progress)` may return false to stop early: what was
-/// gathered stays. Throws `std::invalid_argument` for options that make no sense.
+/// answers gather rays (see `IncomingLight`, `KnowsUnseen`). `progress(fill_progress)` may return false to stop early:
+/// what was gathered stays. Throws `std::invalid_argument` for options that make no sense.
 template <Spectrum S, std::floating_point T, record_features F, IncomingLight<T, random_numbers<T>> Incoming,
           Executor E = in_sequence, std::predicate<const fill_progress&> Progress = detail::go_on>
 fill_result fill_cache(irradiance_cache<S, T, F>& cache,

@@ -25,9 +25,10 @@ struct path_options {
 
 /// Which emission a walk takes for itself where its first ray, or a chain of mirrors after it, meets a light.
 enum class emission_rule : std::uint8_t {
-    all,         ///< a ray from the eye: everything it meets
-    indirect,    ///< a gather ray: the asker looked for lights himself, but not through mirrors
-    no_caustics  ///< a gather ray beside a caustic map: not through mirrors either
+    all,          ///< a ray from the eye: everything it meets
+    indirect,     ///< a gather ray: the asker looked for lights himself, but not through mirrors
+    no_caustics,  ///< a gather ray beside a caustic map: not through mirrors either
+    no_reflected  ///< beside a map of reflected caustics too: nor through mirrors after one diffuse or glossy bounce
 };
 
 /// The end of no path: every path goes on by itself.
@@ -46,8 +47,15 @@ struct walk_state {
     vec3<T> came_from{};  ///< the last point that looked for lights
     T scatter_pdf{0};     ///< density of `path` there; 0 where specular or the eye
     lobe_set last{lobe_set::none};
-    bool mirrored{true};  ///< only specular bounces so far
+    bool mirrored{true};    ///< only specular bounces so far
+    bool scattered{false};  ///< more than one diffuse or glossy bounce
 };
+
+/// Whether light met over a mirror now belongs to a map of reflected caustics.
+template <Scene World>
+[[nodiscard]] bool reflects_caustic(const walk_state<World>& at, emission_rule rule) {
+    return rule == emission_rule::no_reflected && !at.mirrored && !at.scattered;
+}
 
 /// The share of emission met by a scattered ray that is not the light sampling's (1 for the eye and for mirrors).
 template <Scene World, typename Lights>
@@ -55,9 +63,9 @@ template <Scene World, typename Lights>
                                               const hit_of<World>& hit, emission_rule rule, std::uint32_t bounce) {
     using T = scalar_of<World>;
     if (at.mirrored && rule != emission_rule::all) {
-        return bounce == 1 || rule == emission_rule::no_caustics ? T(0) : T(1);
+        return bounce == 1 || rule != emission_rule::indirect ? T(0) : T(1);
     }
-    if (!any(at.last, lobe_set::smooth)) { return T(1); }
+    if (!any(at.last, lobe_set::smooth)) { return reflects_caustic(at, rule) ? T(0) : T(1); }
     if constexpr (TellsPdf<Lights, hit_of<World>>) {
         return balance(at.scatter_pdf, T(lights.pdf(at.came_from, at.path.direction, hit)));
     } else {
@@ -72,9 +80,9 @@ template <Scene World, typename Lights>
     using T = scalar_of<World>;
     if constexpr (TellsEscapedPdf<Lights, T>) {
         if (at.mirrored && rule != emission_rule::all) {
-            return bounce == 1 || rule == emission_rule::no_caustics ? T(0) : T(1);
+            return bounce == 1 || rule != emission_rule::indirect ? T(0) : T(1);
         }
-        if (!any(at.last, lobe_set::smooth)) { return T(1); }
+        if (!any(at.last, lobe_set::smooth)) { return reflects_caustic(at, rule) ? T(0) : T(1); }
         return balance(at.scatter_pdf, T(lights.escaped_pdf(at.came_from, at.path.direction)));
     } else {
         // Nobody looks at the sky, so every ray that meets it counts.
@@ -113,6 +121,7 @@ template <Scene World, Numbers N>
         at.throughput = at.throughput * (1 / q);
     }
     at.last = next->lobe;
+    at.scattered = at.scattered || (!at.mirrored && any(next->lobe, lobe_set::smooth));
     at.mirrored = at.mirrored && !any(next->lobe, lobe_set::smooth);
     at.scatter_pdf = any(next->lobe, lobe_set::smooth) ? T(next->pdf) : T(0);
     at.came_from = vec3<T>(hit.position);
@@ -164,6 +173,9 @@ public:
         }
     }
 
+    /// Whether the walk met nothing but mirrors before where it stands.
+    [[nodiscard]] bool mirrored() const { return at_.mirrored; }
+
     /// Takes in light that leaves the surface the walk stands at, unless its numbers are broken.
     void add(const S& radiance) {
         const S arriving = at_.throughput * radiance;
@@ -208,9 +220,10 @@ private:
 
 /// Walks along `start` and returns the radiance that comes back along it, and the distance of the first hit.
 ///
-/// `terminal(hit, wo, travelled, error)` may end the walk with an optional `estimate` of the radiance that the diffuse
-/// lobes of `hit` send towards `wo`, direct light included; `travelled` is the length of the last leg. Samples with
-/// broken hits or numbers end where they are, never summed.
+/// `terminal(hit, wo, travelled, error, mirrored)` may end the walk with an optional `estimate` of the radiance that
+/// the diffuse lobes of `hit` send towards `wo`, direct light included; `travelled` is the length of the last leg,
+/// `mirrored` tells that there were only mirrors before. Samples with broken hits or numbers end where they are, never
+/// summed.
 template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
 [[nodiscard]] incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
     const World& scene, const Lights& lights, const ray<scalar_of<World>>& start, const N& numbers,
@@ -219,7 +232,7 @@ template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_ter
         lobe_set lobes = stop.hit.lobes();
         if constexpr (!std::same_as<Terminal, no_terminal>) {
             if (any(lobes, lobe_set::diffuse)) {
-                if (const auto rest = terminal(stop.hit, stop.wo, stop.travelled, stop.error)) {
+                if (const auto rest = terminal(stop.hit, stop.wo, stop.travelled, stop.error, walk.mirrored())) {
                     walk.add(*rest);
                     lobes = lobes & ~lobe_set::diffuse;
                 }

@@ -70,8 +70,9 @@ private:
 
 /// What a final-gathered picture is made of.
 struct final_gathering_options {
-    photon_options photons{.direct = 20'000, .caustic = 200'000, .indirect = 100'000};
-    density_options density{};  ///< of the caustic map as it is seen
+    photon_options photons{.direct = 20'000, .caustic = 200'000, .indirect = 100'000, .reflected = 100'000};
+    density_options density{};                        ///< of the caustic map as it is seen
+    density_options reflected_density{.count = 200};  ///< of the map of reflected caustics
     irradiance_options irradiance{};
     photon_source_options source{};
     std::uint32_t rays{64};  ///< gather rays per shading point
@@ -98,7 +99,8 @@ public:
 
     /// What gather rays may take for themselves: light over mirrors only where no caustic map shows it.
     [[nodiscard]] emission_rule caustics() const {
-        return maps_.caustic.paths > 0 ? emission_rule::no_caustics : emission_rule::indirect;
+        if (maps_.caustic.paths == 0) { return emission_rule::indirect; }
+        return maps_.reflected.paths > 0 ? emission_rule::no_reflected : emission_rule::no_caustics;
     }
 
 private:
@@ -129,6 +131,7 @@ public:
         const photon_source<World, Lights> source{scene_, lights_, base_.points(), options_.source};
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
+                               map_layer<spectrum, scalar>{base_.maps().reflected, options_.reflected_density},
                                gather_layer{source, {.rays = options_.rays, .caustics = base_.caustics()}}};
         return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
     }

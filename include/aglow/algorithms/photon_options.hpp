@@ -17,6 +17,7 @@ struct photon_paths {
     std::size_t direct{0};
     std::size_t caustic{0};
     std::size_t indirect{0};
+    std::size_t reflected{0};
 };
 
 /// How many photons, and how.
@@ -25,6 +26,8 @@ struct photon_options {
     std::size_t caustic{0};                  ///< wanted over specular surfaces only; 0 leaves the map out, and such
                                              ///< photons are among the indirect ones
     std::size_t indirect{0};                 ///< wanted after a diffuse or glossy bounce; 0 leaves the map out
+    std::size_t reflected{0};                ///< wanted of the indirect ones that were a caustic before their only such
+                                             ///< bounce, in a map of their own as well; needs a caustic map
     std::size_t most_paths{16'000'000};      ///< paths emitted at the most, whatever is still wanted, the pilot apart
     std::size_t pilot_paths{8192};           ///< paths of the pilot that finds out how many are needed
     photon_paths paths{};                    ///< of each map, where known from an earlier pass; 0: the pilot finds out
@@ -58,6 +61,7 @@ struct photon_maps {
     traced_map<S, T> direct{};
     traced_map<S, T> caustic{};
     traced_map<S, T> indirect{};
+    traced_map<S, T> reflected{};  ///< a part of `indirect` once more, for gathers that leave it out
     energy_ledger<S> ledger{};
 
     [[nodiscard]] std::size_t size() const { return direct.size() + caustic.size() + indirect.size(); }

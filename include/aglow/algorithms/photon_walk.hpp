@@ -15,14 +15,17 @@ namespace aglow {
 
 /// How a particle came to where it lands.
 enum class photon_history : std::uint8_t {
-    direct,   ///< straight from the light
-    caustic,  ///< over specular surfaces only
-    indirect  ///< with at least one diffuse or glossy bounce
+    direct,    ///< straight from the light
+    caustic,   ///< over specular surfaces only
+    indirect,  ///< with a diffuse or glossy bounce, but not as the next
+    reflected  ///< a caustic that was reflected once by a diffuse or glossy surface, and then over mirrors at most
 };
 
 /// The history after one more scattering at `lobe`.
 [[nodiscard]] constexpr photon_history after(photon_history before, lobe_set lobe) {
-    if (any(lobe, lobe_set::smooth)) { return photon_history::indirect; }
+    if (any(lobe, lobe_set::smooth)) {
+        return before == photon_history::caustic ? photon_history::reflected : photon_history::indirect;
+    }
     return before == photon_history::direct ? photon_history::caustic : before;
 }
 

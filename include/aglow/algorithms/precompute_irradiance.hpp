@@ -90,7 +90,8 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
                                  ? maps.direct.irradiance(p.position, p.normal, options.density).value
                                  : direct_irradiance(scene, lights, p.position, p.normal, 4 * position_error(far),
                                                      options.shadow_rays, mix(options.seed, i));
-            p.irradiance = direct + caustic.value + indirect.value;
+            p.irradiance = direct + indirect.value;
+            p.caustic = caustic.value;
             p.error = caustic.error + indirect.error;
             p.radius = indirect.count > 0 ? indirect.radius : T(0);
         }

@@ -25,9 +25,9 @@ namespace detail {
 /// What one block of consecutive paths brought home, by history.
 template <Spectrum S, std::floating_point T>
 struct photon_block {
-    std::array<std::vector<landed_photon<S, T>>, 3> landed{};
-    std::array<std::size_t, 3> counts{};
-    std::array<std::size_t, 3> paths{};  ///< walked here that could have stored photons of each history
+    std::array<std::vector<landed_photon<S, T>>, 4> landed{};
+    std::array<std::size_t, 4> counts{};
+    std::array<std::size_t, 4> paths{};  ///< walked here that could have stored photons of each history
     energy_ledger<S> ledger{};
 };
 
@@ -36,7 +36,7 @@ template <Scene World, Emitter Lights, Executor Run>
 class photon_tracer {
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
-    using kinds = std::array<std::size_t, 3>;
+    using kinds = std::array<std::size_t, 4>;
     using blocks_type = std::vector<photon_block<S, T>>;
     static constexpr std::size_t block_size = 1024;
 
@@ -56,6 +56,7 @@ public:
         finish(result.direct, blocks, photon_history::direct);
         finish(result.caustic, blocks, photon_history::caustic);
         finish(result.indirect, blocks, photon_history::indirect);
+        finish(result.reflected, blocks, photon_history::reflected);
         return result;
     }
 
@@ -65,15 +66,18 @@ private:
     /// Where photons of such a history go: caustic ones that have no map of their own are not lost.
     [[nodiscard]] std::size_t map_of(photon_history h) const {
         const bool homeless = h == photon_history::caustic && options_.caustic == 0;
-        return index(homeless ? photon_history::indirect : h);
+        return index(homeless || h == photon_history::reflected ? photon_history::indirect : h);
     }
 
     void plan() {
-        wanted_ = {options_.direct, options_.caustic, options_.indirect};
+        wanted_ = {options_.direct, options_.caustic, options_.indirect, options_.reflected};
         const lobe_set lobes = possible_lobes(scene_);
         if (!any(lobes, lobe_set::specular)) { leave_out(photon_history::caustic, "left out, no specular surface"); }
+        if (wanted_[index(photon_history::caustic)] == 0) {
+            leave_out(photon_history::reflected, "left out, no caustic map");
+        }
         if (!any(lobes, lobe_set::smooth)) {
-            for (std::size_t kind = 0; kind < 3; ++kind) {
+            for (std::size_t kind = 0; kind < 4; ++kind) {
                 leave_out(static_cast<photon_history>(kind), "left out, no diffuse or glossy surface");
             }
         }
@@ -88,8 +92,9 @@ private:
     }
 
     void take_given_paths() {
-        const kinds given{options_.paths.direct, options_.paths.caustic, options_.paths.indirect};
-        for (std::size_t kind = 0; kind < 3; ++kind) {
+        const kinds given{options_.paths.direct, options_.paths.caustic, options_.paths.indirect,
+                          options_.paths.reflected};
+        for (std::size_t kind = 0; kind < 4; ++kind) {
             if (wanted_[kind] != 0) { paths_[kind] = std::min(given[kind], options_.most_paths); }
         }
     }
@@ -97,12 +102,12 @@ private:
     /// Asks a pilot how many paths the maps need that were not told.
     void find_paths() {
         kinds unknown{};
-        for (std::size_t kind = 0; kind < 3; ++kind) {
+        for (std::size_t kind = 0; kind < 4; ++kind) {
             unknown[kind] = wanted_[kind] != 0 && paths_[kind] == 0 ? options_.pilot_paths : 0;
         }
         if (unknown == kinds{}) { return; }
         const kinds found = pilot(unknown);
-        for (std::size_t kind = 0; kind < 3; ++kind) {
+        for (std::size_t kind = 0; kind < 4; ++kind) {
             if (unknown[kind] != 0) { paths_[kind] = paths_needed(wanted_[kind], found[kind]); }
         }
     }
@@ -128,7 +133,7 @@ private:
         energy_ledger<S> ledger;
         for (const auto& block : blocks) {
             ledger += block.ledger;
-            for (std::size_t kind = 0; kind < 3; ++kind) { found[kind] += block.counts[kind]; }
+            for (std::size_t kind = 0; kind < 4; ++kind) { found[kind] += block.counts[kind]; }
         }
         endless_ = options_.most_bounces == 0 && 2 * ledger.capped > ledger.emitted;
         if (!endless_) { most_bounces_ = options_.most_bounces; }
@@ -152,16 +157,25 @@ private:
     }
 
     void trace_path(const halton_numbers<T>& numbers, std::size_t i, const kinds& paths, photon_block<S, T>& into) {
-        for (std::size_t kind = 0; kind < 3; ++kind) { into.paths[kind] += i < paths[kind] ? 1 : 0; }
+        for (std::size_t kind = 0; kind < 4; ++kind) { into.paths[kind] += i < paths[kind] ? 1 : 0; }
         walk_photon(scene_, lights_, numbers, most_bounces_, into.ledger,
                     [&](const auto& hit, const vec3<T>& wi, const S& power, photon_history history) {
                         const std::size_t kind = map_of(history);
                         if (i < paths[kind]) { store(hit, wi, power, into, kind); }
-                        const bool caustic = history != photon_history::indirect &&
-                                             any(hit.lobes(), lobe_set::specular) &&
-                                             i < paths[index(photon_history::caustic)];
-                        return caustic || i < paths[index(photon_history::indirect)];
+                        if (history == photon_history::reflected && i < paths[index(history)]) {
+                            store(hit, wi, power, into, index(history));
+                        }
+                        return is_wanted_after(history, any(hit.lobes(), lobe_set::specular), i, paths);
                     });
+    }
+
+    /// Whether some map may still store what goes on from a surface that path `i` came to with `history`.
+    [[nodiscard]] static bool is_wanted_after(photon_history history, bool mirrors, std::size_t i, const kinds& paths) {
+        if (i < paths[index(photon_history::indirect)]) { return true; }
+        const bool unscattered = history == photon_history::direct || history == photon_history::caustic;
+        if (unscattered && mirrors && i < paths[index(photon_history::caustic)]) { return true; }
+        const bool to_reflect = history == photon_history::caustic || (history != photon_history::indirect && mirrors);
+        return to_reflect && i < paths[index(photon_history::reflected)];
     }
 
     template <typename H>
@@ -217,7 +231,7 @@ private:
     const Run& run_;
     kinds wanted_{};
     kinds paths_{};
-    std::array<std::string, 3> why_{};
+    std::array<std::string, 4> why_{};
     std::uint32_t most_bounces_;
     bool piloting_{false};
     bool endless_{false};

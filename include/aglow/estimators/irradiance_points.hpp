@@ -22,7 +22,8 @@ template <Spectrum S, std::floating_point T>
 struct irradiance_point {
     vec3<T> position{};
     vec3<T> normal{};    ///< unit, on the side that is lit
-    S irradiance{};      ///< W/m²
+    S irradiance{};      ///< W/m², without `caustic`
+    S caustic{};         ///< irradiance that came over mirrors, which some gathers read elsewhere
     band_of<S> error{};  ///< guess of its error
     T radius{};          ///< what the estimate was spread over: nearer than that, it knows no detail
 };
@@ -33,7 +34,8 @@ class irradiance_points {
 public:
     /// What is read at a place.
     struct reading : estimate<S> {
-        T radius{};  ///< of the estimate that was read
+        T radius{};           ///< of the estimate that was read
+        S without_caustic{};  ///< the value without what came over mirrors
     };
 
     irradiance_points() = default;
@@ -43,13 +45,15 @@ public:
     explicit irradiance_points(std::span<const irradiance_point<S, T>> points, const Run& run = {}) {
         std::vector<std::uint32_t> sound;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (is_radiance(points[i].irradiance)) { sound.push_back(static_cast<std::uint32_t>(i)); }
+            if (is_radiance(points[i].irradiance) && is_radiance(points[i].caustic)) {
+                sound.push_back(static_cast<std::uint32_t>(i));
+            }
         }
         tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return points[i].position; }, run};
         stored_.reserve(tree_.size());
         for (const std::uint32_t i : tree_.order()) {
             const irradiance_point<S, T>& p = points[sound[i]];
-            stored_.push_back({p.irradiance, p.error, p.radius, packed_direction<std::int8_t>{p.normal}});
+            stored_.push_back({p.irradiance, p.caustic, p.error, p.radius, packed_direction<std::int8_t>{p.normal}});
         }
         tree_.forget_order();
         measure();
@@ -75,12 +79,13 @@ public:
         const auto found = tree_.nearest(point, 1, scratch, {.radius2 = square(reach_)}, fits);
         if (found.empty()) { return std::nullopt; }
         const stored& s = stored_[found.slots[0]];
-        return reading{{s.irradiance, s.error}, s.radius};
+        return reading{{s.irradiance + s.caustic, s.error}, s.radius, s.irradiance};
     }
 
 private:
     struct stored {
         S irradiance;
+        S caustic;
         band_of<S> error;
         T radius;
         packed_direction<std::int8_t> normal;
