@@ -17,6 +17,7 @@
 #include <aglow/algorithms/plan.hpp>
 
 #include "common/camera.hpp"
+#include "common/drawing.hpp"
 #include "common/light_set.hpp"
 #include "common/progress.hpp"
 #include "render/options.hpp"
@@ -260,46 +261,19 @@ private:
         return a;
     }
 
-    /// Calls `paint(pixel, i)` for every place(i) that the camera sees.
-    template <typename Place, typename Paint>
-    void for_each_seen(picture& image, std::size_t count, Place&& place, Paint&& paint) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const vec3<T> p = place(i);
-            const auto film = view_.film_point(p, options_.width, options_.height);
-            if (!film || !seen(p)) { continue; }
-            paint(image.at(static_cast<std::size_t>(film->x), static_cast<std::size_t>(film->y)), i);
-        }
-    }
-    [[nodiscard]] bool seen(const vec3<T>& p) const {
-        const vec3<T> back = view_.origin - p;
-        return !scene_.occluded(view_.origin, p + back * T(1e-3));
-    }
-
     [[nodiscard]] picture photons_seen(const maps_type* maps) {
         if (!maps) { throw usage_error("--view photons needs a method with photon maps"); }
         picture image{options_.width, options_.height};
-        const auto add = [&](const auto& map) {
-            for_each_seen(
-                image, map.size(), [&](std::size_t i) { return map.position(i); },
-                [&](S& pixel, std::size_t i) {
-                    const S power = map.photons()[i].power;
-                    if (!aglow::is_black(power)) { pixel += power * (0.2f / aglow::max_component(power)); }
-                });
-        };
-        add(maps->direct);
-        add(maps->caustic);
-        add(maps->indirect);
+        for (const auto* map : {&maps->direct, &maps->caustic, &maps->indirect}) {
+            add_photons(image, scene_, view_, *map);
+        }
         return image;
     }
 
     [[nodiscard]] picture records_seen(picture image, const cache_type* cache) {
         if (!cache) { throw usage_error("--view records needs a method with an irradiance cache"); }
         for (S& pixel : image.pixels) { pixel *= 0.4f; }
-        for_each_seen(
-            image, cache->size(), [&](std::size_t i) { return (*cache)[static_cast<std::uint32_t>(i)].position(); },
-            [](S& pixel, std::size_t) {
-                pixel = {1, 0.35f, 0.05f};
-            });
+        paint_records(image, scene_, view_, *cache);
         return image;
     }
 
