@@ -38,7 +38,7 @@ void look(const World& scene, const ray<scalar_of<World>>& eye, scalar_of<World>
         const vec3<T> wo = -at.path.direction;
         const T error = error_of(*hit, at.path.origin);
         travelled += glm::distance(position, at.path.origin);
-        const vec3<T> near = side_of(*hit, wo);
+        const vec3<T> near = aglow::side_of(*hit, wo);
         const auto add = [&](const vec3<T>& side) {
             found.push_back({{position, side, error}, travelled * footprint_share, mix(key, found.size())});
         };
