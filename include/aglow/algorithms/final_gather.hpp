@@ -41,7 +41,7 @@ public:
         B guess{0};
         for (std::uint32_t i = 0; i < options_.rays; ++i) {
             sobol_sampler<T> random{seed, i};
-            const auto next = hit.sample(wo, random, lobe_set::diffuse);
+            const auto next = hit.sample(wo, random, lobe_set::diffuse & static_lobes<Source>);
             if (!next) { continue; }
             const ray<T> path{lift(vec3<T>(hit.position), vec3<T>(hit.normal), vec3<T>(next->wi), error), next->wi};
             const auto light = source_.incoming(path, numbers.fork(mix(bounce, i)), options_.caustics);

@@ -26,6 +26,9 @@ class photon_source {
     using T = scalar_of<World>;
 
 public:
+    /// What gathering into it can meet.
+    static constexpr lobe_set possible_lobes = static_lobes<World>;
+
     photon_source(const World& scene, const Lights& lights, const irradiance_points<S, T>& points,
                   const photon_source_options& options = {})
         : scene_{scene}, lights_{lights}, points_{points}, options_{options} {}
