@@ -93,6 +93,7 @@
 #include <aglow/algorithms/plan.hpp>
 #include <aglow/algorithms/precompute_irradiance.hpp>
 #include <aglow/algorithms/progressive.hpp>
+#include <aglow/algorithms/stiffness.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
 
 // report: how good is it

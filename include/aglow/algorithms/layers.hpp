@@ -21,7 +21,7 @@ template <Hit H>
 
 /// Radiance towards `wo` that the diffuse lobes of `hit` make of irradiance: `irradiance(side)` is asked for the side
 /// of `wo` and, only where something transmits, for the far side. A diffuse lobe is one whose f does not depend on
-/// `wi`.
+/// `wi`. A surface type may state `possible_lobes` as a scene's may.
 template <lobe_set Possible = lobe_set::all, Surface H, typename Irradiance>
 [[nodiscard]] estimate<surface_spectrum<H>> diffuse_radiance(const H& hit, const vec3<hit_scalar<H>>& wo,
                                                              Irradiance&& irradiance) {
@@ -34,7 +34,7 @@ template <lobe_set Possible = lobe_set::all, Surface H, typename Irradiance>
     };
     const vec3<hit_scalar<H>> near = side_of(hit, wo);
     if (any(hit.lobes(), lobe_set::diffuse_reflection)) { add(near, lobe_set::diffuse_reflection); }
-    if constexpr (any(Possible, lobe_set::diffuse_transmission)) {
+    if constexpr (any(Possible & static_lobes<H>, lobe_set::diffuse_transmission)) {
         if (any(hit.lobes(), lobe_set::diffuse_transmission)) { add(-near, lobe_set::diffuse_transmission); }
     }
     return result;
