@@ -202,9 +202,10 @@ private:
 
         template <typename Weigh>
         void add(T distance2, const photon<S>& p, Weigh& weigh) {
+            // The k-th lies on the rim and does not count: that is the unbiased rule. Asked of the squares themselves,
+            // since -ffast-math may divide by multiplying.
+            if (!(distance2 < radius2)) { return; }
             const T rho2 = distance2 / radius2;
-            // The k-th lies on the rim and does not count: that is the unbiased rule.
-            if (!(rho2 < 1)) { return; }
             const S flux = weigh(p);
             const S share = flux * B(kernel(rho2));
             wide = wide + share;
