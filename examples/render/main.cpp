@@ -55,6 +55,10 @@ void write(const host::render_options& options, const host::render_result& resul
     }
     host::write_png(png, result.layers.front().image, options.exposure);
     std::printf("%s\n", png.c_str());
+    if (!result.heat) { return; }
+    const fs::path heat = png.parent_path() / (png.stem().string() + "-error.png");
+    host::write_png(heat, *result.heat);
+    std::printf("%s\n", heat.c_str());
 }
 
 int run(int count, const char* const* words) {

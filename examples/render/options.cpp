@@ -47,6 +47,17 @@ void read_size(const std::string& text, render_options& options) {
     options.height = pixels(text, cross == std::string::npos ? "" : text.substr(cross + 1));
 }
 
+/// An error like 5% or 0.05 as a share.
+double error_share(std::string text) {
+    const bool percent = !text.empty() && text.back() == '%';
+    if (percent) { text.pop_back(); }
+    double x = 0;
+    if (!CLI::detail::lexical_cast(text, x)) { x = 0; }
+    x = percent ? x / 100 : x;
+    if (!(x >= 1e-4 && x <= 1)) { throw usage_error("--until wants an error from 0.01% to 100%, such as 5%"); }
+    return x;
+}
+
 /// Refuses what is not a number from `low` to `high`, NaN too.
 CLI::Validator between(double low, double high) {
     const auto refuse = [low, high](std::string& text) -> std::string {
@@ -79,6 +90,7 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     std::string how = "gather-cache";
     std::string show = "beauty";
     std::string size;
+    std::string until;
     CLI::App app{"Renders a picture of a built-in scene or of a model file.", "render"};
     app.add_option("SCENE", o.scene, "a built-in scene (see --list) or a model file (OBJ, glTF 2, PLY)");
     app.add_option("--method", how, "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
@@ -101,6 +113,8 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     app.add_option("--view", show, "beauty, direct, indirect, caustic, records or photons [beauty]");
     app.add_flag("--layers", o.layers, "also write direct, indirect and caustic light as layers");
     app.add_option("--exposure", o.exposure, "of the PNG: a factor [1]")->check(between(1e-6, 1e6));
+    app.add_option("--until", until, "render on until an audit certifies this mean relative error, such as 5%");
+    app.add_flag("--error", o.error, "audit the picture; error bars as a layer and a heat map beside the picture");
     app.add_flag("--list", o.list, "list the built-in scenes");
     try {
         app.parse(count, words);
@@ -113,6 +127,7 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     o.how = chosen(methods, "--method", how);
     o.show = chosen(views, "--view", show);
     if (!size.empty()) { read_size(size, o); }
+    if (!until.empty()) { o.until = error_share(until); }
     if (o.output.empty()) { o.output = std::filesystem::path{o.scene}.stem().string() + ".exr"; }
     if (o.output.extension() != ".exr" && o.output.extension() != ".png") {
         throw usage_error("--output " + o.output.string() + ": the name must end in .exr or .png");

@@ -31,6 +31,9 @@ struct render_options {
     std::optional<std::uint32_t> gather_rays{};
     std::optional<double> accuracy{};
     bool layers{false};
+    bool error{false};
+    /// The mean relative error that an audit shall certify; 0 for as many samples as told.
+    double until{0};
     bool list{false};
     float exposure{1};
 };

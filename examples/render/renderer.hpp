@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <functional>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -14,12 +17,16 @@
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/plan.hpp>
+#include <aglow/report/render_until.hpp>
+#include <aglow/report/statement.hpp>
 
 #include "common/camera.hpp"
 #include "common/drawing.hpp"
 #include "common/light_set.hpp"
 #include "common/progress.hpp"
+#include "render/certify.hpp"
 #include "render/options.hpp"
 #include "render/report.hpp"
 #include "render/usage_error.hpp"
@@ -166,7 +173,7 @@ private:
             case view::indirect: return show("", indirect(expose("picture", integrator), maps));
             case view::beauty: break;
         }
-        const picture all = expose("picture", integrator, true);
+        const picture all = options_.until > 0 ? until(integrator) : expose("picture", integrator, true);
         result_.layers.insert(result_.layers.begin(), {"", all});
         if (!options_.layers) { return; }
         show("direct", direct());
@@ -199,6 +206,11 @@ private:
         if (taken_ == 0) { result_.add_fact("samples a pixel", film.samples()); }
         taken_ = film.samples();
         if (film.dropped() > 0) { result_.add_fact(name + ", samples dropped", film.dropped()); }
+        if (with_error && options_.error) { audit(film); }
+        return taken_from(film, with_error);
+    }
+
+    picture taken_from(const aglow::film<S>& film, bool with_error) {
         picture image{options_.width, options_.height};
         picture error{options_.width, options_.height};
         for (std::size_t y = 0; y < options_.height; ++y) {
@@ -209,6 +221,79 @@ private:
         }
         if (with_error) { result_.layers.push_back({"error", std::move(error)}); }
         return image;
+    }
+
+    // ---- how wrong --------------------------------------------------------------------------------------------------
+
+    /// Path tracing looks at the pixels again.
+    template <typename Use>
+    auto with_probe(const Use& use) {
+        const auto through = eye();
+        const aglow::path_tracer<World, light_set<T>> tracer{scene_, lights_};
+        return use(aglow::pixel_probe{through, tracer, options_.width});
+    }
+
+    [[nodiscard]] std::vector<char> features() const {
+        return feature_pixels(options_.width, options_.height, [this](std::size_t x, std::size_t y) {
+            const auto hit = scene_.intersect(eye()({static_cast<T>(x) + T(0.5), static_cast<T>(y) + T(0.5)}));
+            return hit ? static_cast<std::uint32_t>(hit->primitive) : ~0u;
+        });
+    }
+
+    /// Adds samples until an audit certifies the error that was asked for, or it is clear that none will.
+    template <typename Integrator>
+    picture until(const Integrator& integrator) {
+        const auto begun = clock::now();
+        const std::vector<char> feature = features();
+        aglow::film<S> film{options_.width, options_.height};
+        std::optional<audited_film> numbers;
+        const auto advance = [&](double work) {
+            const auto wanted = static_cast<std::uint32_t>(std::ceil(work));
+            film.expose(eye(), integrator, {.samples = wanted - film.samples(), .seed = options_.seed}, run_);
+            return numbers.emplace(film, feature).view();
+        };
+        aglow::render_until_options o;
+        o.audit = {.target = options_.until, .seed = options_.seed};
+        o.first_work = 4;
+        o.most_work = 1 << 16;
+        o.probe_work = 1 / static_cast<double>(options_.width * options_.height);
+        o.progress = [](const aglow::until_progress& p) {
+            std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
+            return true;
+        };
+        const aglow::until_result reached =
+            with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, run_); });
+        result_.phases.push_back({"picture and audits", since(begun)});
+        result_.add_fact("samples a pixel", film.samples());
+        taken_ = film.samples();
+        if (reached.status == aglow::until_status::unreachable) {
+            result_.notes.push_back("the error cannot be reached with these settings: more samples will not do");
+        }
+        note(reached.certificate);
+        if (options_.error) { audit(film); }
+        return taken_from(film, true);
+    }
+
+    /// Audits a finished film: the statements, and the error bars of all pixels.
+    void audit(const aglow::film<S>& film) {
+        const auto begun = clock::now();
+        const audited_film numbers{film, features()};
+        const aglow::audit_options o{
+            .target = options_.until > 0 ? options_.until : 0.05, .seed = options_.seed, .stream = 1};
+        const aglow::audit_result stated =
+            with_probe([&](const auto& probe) { return aglow::audit(numbers.view(), probe, o, run_); });
+        result_.phases.push_back({"audit", since(begun)});
+        if (options_.until == 0) { note(stated); }
+        const std::vector<double> bars = aglow::error_bars(numbers.view(), stated);
+        picture layer{options_.width, options_.height};
+        for (std::size_t i = 0; i < bars.size(); ++i) { layer.pixels[i] = S{static_cast<T>(bars[i])}; }
+        result_.heat = heat_map(taken_from(film, false), bars);
+        result_.layers.push_back({"error_bar", std::move(layer)});
+    }
+
+    void note(const aglow::audit_result& stated) {
+        std::istringstream lines{aglow::statement(stated)};
+        for (std::string line; std::getline(lines, line);) { result_.notes.push_back(line); }
     }
 
     /// Layers are given as many samples as the picture got, whatever it was limited by.

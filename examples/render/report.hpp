@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@ struct render_result {
     std::vector<phase> phases{};
     std::vector<fact> facts{};
     std::vector<std::string> notes{};
+    std::optional<picture> heat{};  ///< error bars in false colour
 
     void add_fact(std::string name, std::uint64_t count) { facts.push_back({std::move(name), grouped(count)}); }
     void add_bytes(std::string name, std::uint64_t bytes);

@@ -1,0 +1,89 @@
+// A film as an audit wants to see it: plain numbers, guesses and classes of pixels.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <aglow/algorithms/film.hpp>
+#include <aglow/report/audit.hpp>
+
+#include "common/picture.hpp"
+
+namespace host {
+
+/// The numbers of a film at one moment.
+class audited_film {
+public:
+    /// `feature` tells of each pixel whether another primitive is near; together with how large the guess is beside the
+    /// light, and with the darkest tenth, it makes the classes that error bars hold in.
+    audited_film(const aglow::film<vec3<float>>& film, const std::vector<char>& feature)
+        : width_{film.width()}, height_{film.height()} {
+        std::vector<double> hardness;
+        std::vector<double> light;
+        for (std::size_t y = 0; y < height_; ++y) {
+            for (std::size_t x = 0; x < width_; ++x) {
+                const vec3<float> p = film.radiance(x, y);
+                values_.insert(values_.end(), {p.x, p.y, p.z});
+                guess_.push_back(film.error(x, y));
+                light.push_back(static_cast<double>(p.x + p.y + p.z));
+                hardness.push_back(static_cast<double>(guess_.back()) / std::max(1e-30, light.back()));
+            }
+        }
+        const double hard = quantile(hardness, 0.75);
+        const double dark = quantile(light, 0.1);
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            const std::uint32_t kind = (hardness[i] > hard ? 2u : 0u) + (feature[i] ? 1u : 0u);
+            classes_.push_back(light[i] <= dark ? 4u : kind);
+        }
+    }
+
+    [[nodiscard]] aglow::audited_picture<float> view() const {
+        return {.image = {values_, width_, height_, 3}, .guess = guess_, .classes = classes_};
+    }
+
+private:
+    static double quantile(std::vector<double> of, double share) {
+        const auto at = of.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(of.size() - 1));
+        std::nth_element(of.begin(), at, of.end());
+        return *at;
+    }
+
+    std::size_t width_;
+    std::size_t height_;
+    std::vector<float> values_{};
+    std::vector<float> guess_{};
+    std::vector<std::uint32_t> classes_{};
+};
+
+/// Of each pixel, whether `id(x, y)` is another one within two pixels.
+template <typename Id>
+[[nodiscard]] std::vector<char> feature_pixels(std::size_t width, std::size_t height, const Id& id) {
+    std::vector<std::uint32_t> ids(width * height);
+    for (std::size_t i = 0; i < ids.size(); ++i) { ids[i] = id(i % width, i / width); }
+    std::vector<char> feature(ids.size(), 0);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const std::size_t x = i % width;
+        const std::size_t y = i / width;
+        for (std::size_t v = y < 2 ? 0 : y - 2; v <= std::min(height - 1, y + 2); ++v) {
+            for (std::size_t u = x < 2 ? 0 : x - 2; u <= std::min(width - 1, x + 2); ++u) {
+                if (ids[v * width + u] != ids[i]) { feature[i] = 1; }
+            }
+        }
+    }
+    return feature;
+}
+
+/// Error bars relative to the light, from black (none) over red to yellow and white (100 % and more).
+[[nodiscard]] inline picture heat_map(const picture& image, const std::vector<double>& bars) {
+    picture map{image.width, image.height};
+    for (std::size_t i = 0; i < bars.size(); ++i) {
+        const vec3<float>& p = image.pixels[i];
+        const float share = static_cast<float>(bars[i]) / std::max(1e-6f, (p.x + p.y + p.z) / 3);
+        map.pixels[i] = glm::clamp(vec3<float>{3 * share, 3 * share - 1, 3 * share - 2}, 0.0f, 1.0f);
+    }
+    return map;
+}
+
+}  // namespace host
