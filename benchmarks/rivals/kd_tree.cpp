@@ -4,9 +4,9 @@
 //     rivals [--smoke] [--count 1000000] [--queries 20000] [--repeats 5] [--sets ABRCD] [--csv rivals.csv]
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstdint>
 #include <exception>
 #include <functional>
 #include <map>

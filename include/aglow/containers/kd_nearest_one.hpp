@@ -23,6 +23,7 @@ struct kd_best {
 
 template <typename T>
 void offer(const kd_storage<T>& tree, kd_best<T>& best, std::uint32_t slot, T distance2, const kd_filter<T>& filter) {
+    if (best.found && distance2 > best.distance2) { return; }
     if (best.found && distance2 == best.distance2 && tree.rank(slot) > tree.rank(best.slot)) { return; }
     if (filter.accepts != nullptr && !filter.accepts(filter.caller, slot)) { return; }
     best = {simd::next_above(distance2), distance2, slot, true};

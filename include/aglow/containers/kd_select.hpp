@@ -168,7 +168,7 @@ template <typename T>
 [[gnu::noinline]] void break_ties(const kd_storage<T>& tree, kd_candidates<T>& found, T farthest, std::uint32_t k) {
     found.ranks.clear();
     for (std::uint32_t i = 0; i < found.count; ++i) {
-        if (found.distances2[i] == farthest) { found.ranks.push_back(tree.rank(found.slots[i])); }
+        if (found.distances2[i] >= farthest) { found.ranks.push_back(tree.rank(found.slots[i])); }
     }
     const std::uint32_t excess = found.count - k;
     const auto last = found.ranks.end() - static_cast<std::ptrdiff_t>(excess) - 1;
@@ -178,7 +178,7 @@ template <typename T>
     }
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < found.count; ++i) {
-        if (found.distances2[i] == farthest && tree.rank(found.slots[i]) > *last) { continue; }
+        if (found.distances2[i] >= farthest && tree.rank(found.slots[i]) > *last) { continue; }
         found.distances2[kept] = found.distances2[i];
         found.slots[kept++] = found.slots[i];
     }

@@ -3,7 +3,8 @@
 // Halved at the exact median of the widest side and laid out without pointers: sixteen children a node, full leaves. A
 // search guesses the radius from how crowded the place is, collects all within, and selects; a wrong guess costs time
 // and never changes the answer. All that a search returns has one order and one set of bits, whatever the guess, the
-// number of threads and the instruction set.
+// number of threads and the instruction set: AVX-512, AVX2 or SSE4 are used where the machine has them, under any
+// flags.
 #pragma once
 
 #include <algorithm>

@@ -13,11 +13,13 @@ namespace aglow::simd {
 /// How many numbers every pack holds, whatever the instruction set.
 inline constexpr unsigned lanes = 16;
 
-/// The next number above `x`, which is not negative and below infinity.
+/// The next number above `x`, which is not negative and below infinity; of the normal ones, for -ffast-math takes the
+/// others for zero.
 template <std::floating_point T>
 [[nodiscard]] constexpr T next_above(T x) {
     using bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-    return std::bit_cast<T>(static_cast<bits>(std::bit_cast<bits>(x) + 1));
+    constexpr T least = std::numeric_limits<T>::min();
+    return x < least ? least : std::bit_cast<T>(static_cast<bits>(std::bit_cast<bits>(x) + 1));
 }
 
 /// Asks for the memory at `address` before it is needed.
