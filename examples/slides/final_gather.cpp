@@ -15,7 +15,7 @@ host::picture panel(const host::slide& s, const world& scene, const char* name, 
     const host::stopwatch clock;
     const auto integrator = make();
     const double ready = clock.seconds();
-    const host::picture image = s.expose(scene.view(), integrator, s.tiny() ? 1 : 4);
+    const host::picture image = s.expose(scene.view(), integrator, s.tiny() ? 1 : 8);
     const double taken = clock.seconds();
     const double error = host::relative_square_error(image, s.reference("cornell-glass"));
     std::printf("%-13s ready after %5.1f s, done after %5.1f s  relMSE %.2e\n", name, ready, taken, error);
@@ -30,10 +30,10 @@ int main(int count, char** words) {
         const world scene{host::scenes::cornell_glass<float>()};
         const lights& lit = scene.lights();
         const auto eye = s.eye(scene.view());
-        const std::size_t wanted = s.tiny() ? 2'000 : 100'000;
-        const aglow::photon_options photons{.caustic = 2 * wanted, .indirect = wanted};
-        aglow::photon_options gathered = photons;
-        gathered.direct = wanted / 5;  // gather rays read direct light too
+        aglow::photon_options gathered = aglow::gather_caching_options{}.photons;
+        if (s.tiny()) { gathered.direct = gathered.caustic = gathered.indirect = gathered.reflected = 2'000; }
+        aglow::photon_options photons = gathered;
+        photons.direct = photons.reflected = 0;  // for gather rays alone
         aglow::caching_options caching;
         caching.view.width = caching.view.height = s.side();
 
