@@ -34,7 +34,7 @@ int main(int count, char** words) {
         std::vector<host::picture> lit;
         const auto add = [&](const char* name, const map& photons) {
             std::printf("%-8s %6zu photons of %zu paths\n", name, photons.size(), photons.paths);
-            dots.push_back(landed(s, scene, photons));
+            dots.push_back(host::captioned(landed(s, scene, photons), name));
             lit.push_back(host::captioned(light_of(s, scene, photons), name));
         };
         add("direct", maps.direct);
