@@ -8,7 +8,8 @@
 
 namespace aglow {
 
-/// Radiance that comes along a ray, how far away it comes from (infinite where nothing was met), and a guess of its error.
+/// Radiance that comes along a ray, how far away it comes from (infinite where nothing was met), and a guess of its
+/// error.
 template <Spectrum S, std::floating_point T>
 struct incoming_light {
     S radiance{};
