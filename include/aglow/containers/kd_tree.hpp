@@ -107,7 +107,7 @@ public:
 
     /// A tree of `position(item)` for every item. Positions that are not finite, or so far out that squared distances
     /// would not be (beyond 4e18 for float), are left out and counted in `dropped()`. The same tree for any executor.
-    /// O(n log n), with room for 36 bytes more per point while it runs (float). Throws std::length_error for 2^32 - 64
+    /// O(n log n), with 40 bytes more per point while it runs (float). Throws std::length_error for 2^32 - 64
     /// items or more.
     template <std::ranges::random_access_range Items, typename Position, Executor E = in_sequence>
         requires std::convertible_to<std::invoke_result_t<const Position&, std::ranges::range_reference_t<const Items>>,
