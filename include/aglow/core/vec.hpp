@@ -34,10 +34,12 @@ template <typename T>
 /// Largest absolute coordinate of `v`: what the ulp of a position is measured by.
 template <typename T>
 [[nodiscard]] constexpr T max_abs(const vec3<T>& v) {
-    const T x = v.x < 0 ? -v.x : v.x;
-    const T y = v.y < 0 ? -v.y : v.y;
-    const T z = v.z < 0 ? -v.z : v.z;
-    return x > y ? (x > z ? x : z) : (y > z ? y : z);
+    // Maxima alone, which no processor has to guess.
+    const T x = v.x > -v.x ? v.x : -v.x;
+    const T y = v.y > -v.y ? v.y : -v.y;
+    const T z = v.z > -v.z ? v.z : -v.z;
+    const T larger = x > y ? x : y;
+    return larger > z ? larger : z;
 }
 
 }  // namespace aglow

@@ -1,0 +1,44 @@
+// What including the library costs: user seconds of the compiler, the least of some runs.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace {
+
+double user_seconds() {
+    rusage used{};
+    getrusage(RUSAGE_CHILDREN, &used);
+    return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
+}
+
+double least(const std::string& command, int runs) {
+    double best = 1e9;
+    for (int i = 0; i < runs; ++i) {
+        const double before = user_seconds();
+        if (std::system(command.c_str()) != 0) { std::exit(1); }
+        best = std::min(best, user_seconds() - before);
+    }
+    return best;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const int runs = count > 1 ? std::max(1, std::atoi(arguments[1])) : 5;
+    const auto folder = std::filesystem::temp_directory_path();
+    const auto write = [&](const char* name, const char* text) {
+        std::ofstream{folder / name} << text;
+        return (folder / name).string();
+    };
+    const std::string nothing = write("aglow_nothing.cpp", "");
+    const std::string whole = write("aglow_whole.cpp", "#include <aglow/aglow.hpp>\n");
+    const std::string compile = AGLOW_COMPILER " -std=c++20 -I" AGLOW_ROOT "/include -c -o /dev/null ";
+    std::printf("nothing at -O0          %.2f s\n", least(compile + "-O0 " + nothing, runs));
+    std::printf("aglow.hpp at -O0        %.2f s, to stay below 1\n", least(compile + "-O0 " + whole, runs));
+    std::printf("minimal.cpp at -O2      %.2f s\n", least(compile + "-O2 " AGLOW_ROOT "/examples/minimal.cpp", runs));
+}
