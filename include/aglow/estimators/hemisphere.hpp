@@ -160,7 +160,7 @@ template <Spectrum S, std::floating_point T>
     const auto [rings, sectors] = grid.shape();
     const std::span<const S> radiance = grid.radiance();
     T sum{};
-    T variance{};
+    double variance{};  // squares of faint light leave the range of floats
     for (std::uint32_t k = 0; k < sectors; ++k) {
         const S* here = &radiance[std::size_t{k} * rings];
         const S* left = &radiance[std::size_t{k == 0 ? sectors - 1 : k - 1} * rings];
@@ -169,10 +169,10 @@ template <Spectrum S, std::floating_point T>
             const T value = static_cast<T>(max_component(here[j]));
             const T beside = static_cast<T>(max_component(left[j])) + static_cast<T>(max_component(right[j]));
             sum += value;
-            variance += square(value * 2 - beside);
+            variance += square(static_cast<double>(value * 2 - beside));
         }
     }
-    return sum > 0 ? std::sqrt(variance / 6) / sum : T(0);
+    return sum > 0 ? static_cast<T>(std::sqrt(variance / 6)) / sum : T(0);
 }
 
 /// The mean direction that light comes from, in local axes, weighed by radiance times cosine. Its length tells how

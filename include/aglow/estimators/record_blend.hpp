@@ -164,7 +164,8 @@ public:
     [[nodiscard]] irradiance_answer<S, T> answer() const {
         if (!(weight_ > limits_.weight)) { return {}; }
         const T scale = 1 / weight_;
-        return {sum_ * static_cast<band_of<S>>(scale), (error_ + std::sqrt(variance_)) * scale, weight_, records_};
+        return {sum_ * static_cast<band_of<S>>(scale), (error_ + static_cast<T>(std::sqrt(variance_))) * scale, weight_,
+                records_};
     }
 
 private:
@@ -175,7 +176,7 @@ private:
         ++records_;
         const T scale = weight * static_cast<T>(max_component(record.irradiance()));
         error_ += scale * relative_error;
-        if constexpr (F.noise) { variance_ += square(scale * record.relative_noise()); }
+        if constexpr (F.noise) { variance_ += square(static_cast<double>(scale * record.relative_noise())); }
     }
 
     vec3<T> point_;
@@ -184,7 +185,7 @@ private:
     S sum_{};
     T weight_{};
     T error_{};
-    T variance_{};
+    double variance_{};  ///< squares of faint light leave the range of floats
     std::uint32_t records_{0};
 };
 

@@ -18,9 +18,10 @@ namespace aglow::detail {
 
 /// Squared standard error of the largest band; 0 where records do not keep it.
 template <Spectrum S, std::floating_point T, record_features F>
-[[nodiscard]] T variance_of(const irradiance_record<S, T, F>& r) {
+[[nodiscard]] double variance_of(const irradiance_record<S, T, F>& r) {
     if constexpr (F.noise) {
-        return square(r.relative_noise() * static_cast<T>(max_component(r.irradiance())));
+        // Squares of faint light leave the range of floats.
+        return square(static_cast<double>(r.relative_noise()) * static_cast<double>(max_component(r.irradiance())));
     } else {
         return 0;
     }
@@ -46,7 +47,8 @@ template <typename Tree, Spectrum S, std::floating_point T, record_features F>
         // Too near to tell curvature from noise; the record itself among them.
         if (view.judged != verdict::used || !(view.t2 > T(0.01))) { return; }
         const T high = largest_difference<S, T>(r.extrapolate(view.local, view.normal), other.irradiance());
-        errors.push_back(std::sqrt(std::max(T(0), high * high - variance_of(r) - variance_of(other))) / view.t2);
+        const double own2 = square(static_cast<double>(high)) - variance_of(r) - variance_of(other);
+        errors.push_back(static_cast<T>(std::sqrt(std::max(0.0, own2))) / view.t2);
     });
     const T irradiance = static_cast<T>(max_component(r.irradiance()));
     if (errors.empty() || !(irradiance > 0)) { return unknown; }
@@ -65,10 +67,10 @@ template <typename Tree, Spectrum S, std::floating_point T, record_features F>
                                                   std::span<const T> bends, const lookup_limits<T>& limits) {
     struct prediction {
         S irradiance;
-        T bias2;
+        double bias2;
     };
     std::vector<prediction> predictions;
-    T variance{};
+    double variance{};
     const vec3<T> normal = r.normal();
     tree.visit_covering(r.position(), [&](const auto& item) {
         const irradiance_record<S, T, F>& other = item.record;
@@ -76,24 +78,26 @@ template <typename Tree, Spectrum S, std::floating_point T, record_features F>
         if (view.judged != verdict::used) { return; }
         variance += variance_of(other);
         const T bias = bends[item.index] * view.t2 * static_cast<T>(max_component(other.irradiance()));
-        predictions.push_back({other.extrapolate(view.local, view.normal), bias * bias});
+        predictions.push_back({other.extrapolate(view.local, view.normal), square(static_cast<double>(bias))});
     });
     if (!(variance > 0)) { return r; }
-    variance /= static_cast<T>(predictions.size());
+    variance /= static_cast<double>(predictions.size());
     S sum{};
     T weights{};
     T weights2{};
     for (const prediction& p : predictions) {
         // What differs by more than noise explains (the difference of two has twice the variance) lies across an edge.
-        const T edge2 = std::max(T(0), square(largest_difference<S, T>(p.irradiance, r.irradiance())) - 8 * variance);
-        const T weight = variance / (variance + p.bias2 + edge2);
+        const double apart = static_cast<double>(largest_difference<S, T>(p.irradiance, r.irradiance()));
+        const double edge2 = std::max(0.0, square(apart) - 8 * variance);
+        const T weight = static_cast<T>(variance / (variance + p.bias2 + edge2));
         sum = sum + p.irradiance * static_cast<band_of<S>>(weight);
         weights += weight;
         weights2 += weight * weight;
     }
     const S mean = sum * static_cast<band_of<S>>(1 / weights);
     const T most = static_cast<T>(max_component(mean));
-    return r.with_irradiance(mean, most > 0 ? std::sqrt(variance * weights2) / (weights * most) : T(0));
+    return r.with_irradiance(
+        mean, most > 0 ? static_cast<T>(std::sqrt(variance * static_cast<double>(weights2))) / (weights * most) : T(0));
 }
 
 }  // namespace aglow::detail
