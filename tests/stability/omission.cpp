@@ -19,16 +19,16 @@ template <typename S, record_features F>
 constexpr std::size_t record_bytes = sizeof(irradiance_record<S, float, F>);
 
 // A record of gray light with nothing but its reach; all that RGB can have but the incident direction.
-static_assert(record_bytes<float, {.gradients = false, .ellipse = false, .noise = false}> <= 32);
-static_assert(record_bytes<float, {.gradients = false}> <= 32);
-static_assert(record_bytes<rgb, {}> <= 64);
+static_assert(record_bytes<float, record_features{.gradients = false, .ellipse = false, .noise = false}> <= 32);
+static_assert(record_bytes<float, record_features{.gradients = false}> <= 32);
+static_assert(record_bytes<rgb, record_features{}> <= 64);
 // Each part is paid for by itself, and a part left out by nobody.
-static_assert(record_bytes<rgb, {.gradients = false}> + 24 == record_bytes<rgb, {}>);
-static_assert(record_bytes<float, {.gradients = false, .ellipse = false}> + 4 ==
-              record_bytes<float, {.gradients = false}>);
-static_assert(record_bytes<float, {.gradients = false, .noise = false}> + 4 ==
-              record_bytes<float, {.gradients = false}>);
-static_assert(record_bytes<rgb, {.incident = true}> == record_bytes<rgb, {}> + 4);
+static_assert(record_bytes<rgb, record_features{.gradients = false}> + 24 == record_bytes<rgb, record_features{}>);
+static_assert(record_bytes<float, record_features{.gradients = false, .ellipse = false}> + 4 ==
+              record_bytes<float, record_features{.gradients = false}>);
+static_assert(record_bytes<float, record_features{.gradients = false, .noise = false}> + 4 ==
+              record_bytes<float, record_features{.gradients = false}>);
+static_assert(record_bytes<rgb, record_features{.incident = true}> == record_bytes<rgb, record_features{}> + 4);
 static_assert(sizeof(photon<rgb>) <= 24);
 static_assert(sizeof(photon<float>) <= 16);
 
