@@ -128,8 +128,9 @@ private:
 
 /// What the classical combination is made of.
 struct gather_caching_options {
-    photon_options photons{.direct = 20'000, .caustic = 200'000, .indirect = 100'000, .reflected = 100'000};
-    density_options density{};                        ///< of the caustic map as it is seen
+    photon_options photons{
+        .direct = 20'000, .caustic = 200'000, .indirect = 100'000};  ///< 0 reflected: half the caustic
+    density_options density{};                                       ///< of the caustic map as it is seen
     density_options reflected_density{.count = 400};  ///< of the map of reflected caustics, read once a record
     irradiance_options irradiance{};
     photon_source_options source{};

@@ -70,9 +70,10 @@ private:
 
 /// What a final-gathered picture is made of.
 struct final_gathering_options {
-    photon_options photons{.direct = 20'000, .caustic = 200'000, .indirect = 100'000, .reflected = 100'000};
-    density_options density{};                        ///< of the caustic map as it is seen
-    density_options reflected_density{.count = 200};  ///< of the map of reflected caustics
+    photon_options photons{
+        .direct = 20'000, .caustic = 200'000, .indirect = 100'000};  ///< 0 reflected: half the caustic
+    density_options density{};                                       ///< of the caustic map as it is seen
+    density_options reflected_density{.count = 200};                 ///< of the map of reflected caustics
     irradiance_options irradiance{};
     photon_source_options source{};
     std::uint32_t rays{64};  ///< gather rays per shading point
@@ -91,7 +92,7 @@ public:
     template <Executor Run = in_sequence>
     gather_base(const World& scene, const Lights& lights, const photon_options& photons,
                 const irradiance_options& irradiance, const Run& run = {})
-        : maps_{trace_photons(scene, lights, photons, run)},
+        : maps_{trace_photons(scene, lights, with_reflected(photons), run)},
           points_{precompute_irradiance(scene, lights, maps_, irradiance, run)} {}
 
     [[nodiscard]] const photon_maps<spectrum, scalar>& maps() const { return maps_; }
@@ -104,6 +105,12 @@ public:
     }
 
 private:
+    /// A gather beside a caustic map needs the caustics' reflection too, or small bright spots speckle it.
+    [[nodiscard]] static photon_options with_reflected(photon_options photons) {
+        if (photons.reflected == 0) { photons.reflected = photons.caustic / 2; }
+        return photons;
+    }
+
     photon_maps<spectrum, scalar> maps_;
     irradiance_points<spectrum, scalar> points_;
 };

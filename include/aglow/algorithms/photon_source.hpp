@@ -37,20 +37,24 @@ public:
     template <Numbers N>
     [[nodiscard]] incoming_light<S, T> incoming(const ray<T>& gather, const N& numbers,
                                                 emission_rule rule = emission_rule::indirect) const {
-        const auto read = [&](const hit_of<World>& hit, const vec3<T>& wo, T travelled, T, bool mirrored) {
-            return this->read(hit, wo, travelled, mirrored && rule == emission_rule::no_reflected);
+        const auto read = [&](const hit_of<World>& hit, const vec3<T>& wo, T travelled, T error, bool mirrored) {
+            return this->read(hit, wo, travelled, error, mirrored && rule == emission_rule::no_reflected);
         };
         return walk_path(scene_, lights_, gather, numbers, rule, options_.paths, read);
     }
 
 private:
-    [[nodiscard]] std::optional<estimate<S>> read(const hit_of<World>& hit, const vec3<T>& wo, T travelled,
+    [[nodiscard]] std::optional<estimate<S>> read(const hit_of<World>& hit, const vec3<T>& wo, T travelled, T error,
                                                   bool without_caustic) const {
         bool usable = true;
         const auto irradiance = [&](const vec3<T>& side) -> estimate<S> {
             const auto found = points_.nearest(vec3<T>(hit.position), side);
             usable = usable && found && travelled >= static_cast<T>(options_.near) * found->radius;
             if (!found) { return {}; }
+            // Behind a thin wall lie points of the same plane and side.
+            const vec3<T> lifted = side * error;
+            usable =
+                usable && !(found->cut && scene_.occluded(vec3<T>(hit.position) + lifted, found->position + lifted));
             return {without_caustic ? found->without_caustic : found->value, found->error};
         };
         const estimate<S> radiance = diffuse_radiance<static_lobes<World>>(hit, wo, irradiance);

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/photon_options.hpp>
+#include <aglow/core/frame.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
 
@@ -57,6 +59,38 @@ template <Scene World, Illuminator Lights>
     return sum * (1 / static_cast<band_of<S>>(std::max(1u, rays)));
 }
 
+namespace detail {
+
+/// Whether anything cuts through the disc of `radius` around a point on a surface: six spokes tell.
+template <Intersector World>
+[[nodiscard]] bool is_cut(const World& scene, const vec3<scalar_of<World>>& from, const frame<scalar_of<World>>& axes,
+                          scalar_of<World> radius) {
+    using T = scalar_of<World>;
+    for (int i = 0; i < 6; ++i) {
+        const T angle = pi<T> / 3 * static_cast<T>(i);
+        if (scene.occluded(from, from + (axes.x * std::cos(angle) + axes.y * std::sin(angle)) * radius)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Irradiance from photons that can be seen from the point: behind a thin wall in the middle of their disc lie photons
+/// of the same plane, side and normal, which no test of these can tell apart.
+template <Intersector World, Spectrum S>
+[[nodiscard]] density_estimate<S, scalar_of<World>> seen_irradiance(
+    const World& scene, const photon_map<S, scalar_of<World>>& map, const vec3<scalar_of<World>>& point,
+    const vec3<scalar_of<World>>& normal, scalar_of<World> error, const density_options& options) {
+    using T = scalar_of<World>;
+    const auto plain = map.irradiance(point, normal, options);
+    const vec3<T> from = point + normal * error;
+    if (plain.count == 0 || !is_cut(scene, from, frame<T>{normal}, plain.radius)) { return plain; }
+    return map.irradiance(point, normal, options,
+                          [&](const vec3<T>& photon) { return !scene.occluded(from, photon + normal * error); });
+}
+
+}  // namespace detail
+
 /// Irradiance from all light at every `options.every`-th photon of each map, the photons' side. Points keep the radius
 /// of their indirect estimate. The same for any executor. O(points (k + shadow rays)).
 template <Scene World, Illuminator Lights, Executor Run = in_sequence>
@@ -75,25 +109,29 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
     choose(maps.direct);
     choose(maps.caustic);
     choose(maps.indirect);
-    const T far = [&] {
-        bounds<T> all = maps.direct.box();
-        all.add(maps.caustic.box());
-        all.add(maps.indirect.box());
-        return all.empty() ? T(0) : std::max(max_abs(all.low), max_abs(all.high));
-    }();
+    const T error = 4 * position_error([&] {
+                        bounds<T> all = maps.direct.box();
+                        all.add(maps.caustic.box());
+                        all.add(maps.indirect.box());
+                        return all.empty() ? T(0) : std::max(max_abs(all.low), max_abs(all.high));
+                    }());
     for_each_block(run, points.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             irradiance_point<S, T>& p = points[i];
-            const auto indirect = maps.indirect.irradiance(p.position, p.normal, options.density);
-            const auto caustic = maps.caustic.irradiance(p.position, p.normal, options.density);
-            const S direct = options.shadow_rays == 0
-                                 ? maps.direct.irradiance(p.position, p.normal, options.density).value
-                                 : direct_irradiance(scene, lights, p.position, p.normal, 4 * position_error(far),
-                                                     options.shadow_rays, mix(options.seed, i));
+            const auto seen = [&](const photon_map<S, T>& map) {
+                return detail::seen_irradiance<World, S>(scene, map, p.position, p.normal, error, options.density);
+            };
+            const auto indirect = seen(maps.indirect);
+            const auto caustic = seen(maps.caustic);
+            const S direct = options.shadow_rays == 0 ? seen(maps.direct).value
+                                                      : direct_irradiance(scene, lights, p.position, p.normal, error,
+                                                                          options.shadow_rays, mix(options.seed, i));
             p.irradiance = direct + indirect.value;
             p.caustic = caustic.value;
             p.error = caustic.error + indirect.error;
             p.radius = indirect.count > 0 ? indirect.radius : T(0);
+            p.cut = detail::is_cut(scene, p.position + p.normal * error, frame<T>{p.normal},
+                                   std::max(p.radius, caustic.radius));
         }
     });
     return irradiance_points<S, T>{points, run};

@@ -26,6 +26,7 @@ struct irradiance_point {
     S caustic{};         ///< irradiance that came over mirrors, which some gathers read elsewhere
     band_of<S> error{};  ///< guess of its error
     T radius{};          ///< what the estimate was spread over: nearer than that, it knows no detail
+    bool cut{};          ///< whether something cuts through that disc, so that it may lie hidden from a near place
 };
 
 /// Many irradiance points; the nearest one that fits a surface speaks for it. `const` look-ups from many threads.
@@ -36,6 +37,8 @@ public:
     struct reading : estimate<S> {
         T radius{};           ///< of the estimate that was read
         S without_caustic{};  ///< the value without what came over mirrors
+        vec3<T> position{};   ///< of the point that was read
+        bool cut{};           ///< whether it may be hidden from where it was read
     };
 
     irradiance_points() = default;
@@ -53,7 +56,8 @@ public:
         stored_.reserve(tree_.size());
         for (const std::uint32_t i : tree_.order()) {
             const irradiance_point<S, T>& p = points[sound[i]];
-            stored_.push_back({p.irradiance, p.caustic, p.error, p.radius, packed_direction<std::int8_t>{p.normal}});
+            stored_.push_back(
+                {p.irradiance, p.caustic, p.error, p.radius, packed_direction<std::int8_t>{p.normal}, p.cut});
         }
         tree_.forget_order();
         measure();
@@ -79,7 +83,8 @@ public:
         const auto found = tree_.nearest(point, 1, scratch, {.radius2 = square(reach_)}, fits);
         if (found.empty()) { return std::nullopt; }
         const stored& s = stored_[found.slots[0]];
-        return reading{{s.irradiance + s.caustic, s.error}, s.radius, s.irradiance};
+        return reading{
+            {s.irradiance + s.caustic, s.error}, s.radius, s.irradiance, tree_.position(found.slots[0]), s.cut};
     }
 
 private:
@@ -89,6 +94,7 @@ private:
         band_of<S> error;
         T radius;
         packed_direction<std::int8_t> normal;
+        bool cut;
     };
 
     /// Looks eight times as far as the spacing of points that lay evenly on the faces of their box.

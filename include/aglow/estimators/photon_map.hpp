@@ -73,9 +73,16 @@ public:
     /// told.
     [[nodiscard]] density_estimate<S, T> irradiance(const vec3<T>& point, const vec3<T>& normal,
                                                     const density_options& options = {}) const {
+        return irradiance(point, normal, options, [](const vec3<T>&) { return true; });
+    }
+
+    /// The same from photons whose position `counts` alone: what the caller knows to be hidden does not count.
+    template <std::predicate<const vec3<T>&> Counts>
+    [[nodiscard]] density_estimate<S, T> irradiance(const vec3<T>& point, const vec3<T>& normal,
+                                                    const density_options& options, Counts&& counts) const {
         const auto weigh = [](const photon<S>& p) { return p.power; };
-        auto e = sum(
-            point, options, [&](kd_slot i) { return accepts(i, point, normal, options); }, weigh);
+        const auto accept = [&](kd_slot i) { return accepts(i, point, normal, options) && counts(tree_.position(i)); };
+        auto e = sum(point, options, accept, weigh);
         // Nobody came, and yet with 95 % confidence up to three were to be expected (the rule of three).
         if (e.count == 0 && e.radius > 0) {
             e.error = 3 / pi<band_of<S>> * brightest_ * unit_ * band_of<S>(1 / square(e.radius));
