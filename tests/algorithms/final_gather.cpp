@@ -96,7 +96,7 @@ TEST_CASE("final_gather: rays start off the surface, on the side that they leave
     CHECK(gathered(gather_layer{side}, leaf, 0, {0, 0, -1}).value.x > 1);
 }
 
-TEST_CASE("final_gather: nothing to gather for mirrors, nor without rays; broken light is left out") {
+TEST_CASE("final_gather: nothing to gather for mirrors, nor without rays, and broken light is left out") {
     const answers loud{[](const ray<float>&) -> incoming_light<S, float> { throw std::logic_error("asked"); }};
     const material<S> mirror{.mirror = S{1}};
     CHECK(gathered(gather_layer{loud}, mirror, 0).value == S{0});
