@@ -132,7 +132,9 @@ TEST_CASE("stability 60: normals a hair longer than one neither break a look-up 
     random_sampler<float> random{5};
     int longer = 0;
     for (int i = 0; i < 2000; ++i) {
-        const rgb n = glm::normalize(rgb{random.next_1d() - 0.5f, random.next_1d() - 0.5f, random.next_1d() - 0.5f});
+        // Normalising leaves some a hair too long, which ones is the compiler's choice: here all are, by four ulp.
+        const rgb n = glm::normalize(rgb{random.next_1d() - 0.5f, random.next_1d() - 0.5f, random.next_1d() - 0.5f}) *
+                      (1 + 4 * std::numeric_limits<float>::epsilon());
         longer += glm::dot(n, n) > 1 ? 1 : 0;
         auto e = flat(rgb{static_cast<float>(i), 0, 0});
         e.axes = frame<float>{n};
@@ -142,7 +144,7 @@ TEST_CASE("stability 60: normals a hair longer than one neither break a look-up 
         CHECK(answer.irradiance == 1);
         CHECK(is_finite(answer.weight));
     }
-    CHECK(longer > 400);
+    CHECK(longer == 2000);
 }
 
 TEMPLATE_TEST_CASE("stability 61: points on a plane, a line or one spot are no exception for the nearest", "", float,
