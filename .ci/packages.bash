@@ -4,7 +4,7 @@ packages_to_build=(build-essential cmake ninja-build libglm-dev)
 packages_to_test=("${packages_to_build[@]}" catch2 libopenexr-dev)
 packages_to_show=("${packages_to_build[@]}" libopenexr-dev libpng-dev libcli11-dev libembree-dev libassimp-dev)
 packages_to_measure=(pkg-config libbenchmark-dev libnanoflann-dev libflann-dev libcgal-dev)
-packages_to_check=(git clang libclang-rt-dev llvm clang-format)
+packages_to_check=(git clang libclang-rt-dev llvm clang-format chromium)
 
 as_root() { if (( EUID == 0 )); then "$@"; else sudo "$@"; fi; }
 apt_get() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y "$@" </dev/null >/dev/null; }

@@ -40,8 +40,9 @@ struct settings {
 
 constexpr std::string_view usage =
     "usage: error_vs_time [--output DIR] [--scene NAME]... [--seeds N] [--full | --smoke]\n"
-    "Renders scenes by all methods at rising budgets and writes runs.csv, report.json, report.html and report.md into\n"
-    "DIR (build/error_vs_time). What DIR holds already of the same study is not rendered again. A few minutes; with\n"
+    "Renders scenes by all methods at rising budgets and writes runs.csv, report.json, report.html, report.md and the\n"
+    "curves of each scene as SVG into DIR (build/error_vs_time). What DIR holds already of the same study is not "
+    "rendered again. A few minutes; with\n"
     "--full, hours: more seeds, larger budgets, all scenes.\n";
 
 settings parse(int count, char** arguments) {
@@ -291,6 +292,9 @@ private:
         write(settings_.output / "runs.csv", runs_csv(study_));
         write(settings_.output / "report.html", report_html(study_));
         write(settings_.output / "report.md", report_markdown(study_));
+        for (const std::string& scene : settings_.scenes) {
+            write(settings_.output / (scene + "-relmse.svg"), report_svg(study_, scene, metrics()[1]));
+        }
     }
 
     settings settings_;

@@ -10,6 +10,14 @@
 
 namespace error_vs_time {
 
+const char* const plot_style = R"(
+svg text { font: 12px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; fill: #6a6a70; }
+svg .title { font-size: 14px; font-weight: 600; fill: #1d1d1f; } svg .name { font-weight: 600; }
+.grid { stroke: #ececef; } .axis { stroke: #8a8a90; } .target { stroke: #9a9aa0; stroke-dasharray: 2 4; }
+.curve { fill: none; stroke: currentColor; stroke-width: 2; }
+.band { fill: currentColor; opacity: .13; stroke: none; } circle { fill: currentColor; }
+)";
+
 namespace {
 
 constexpr double width = 620;
@@ -192,6 +200,18 @@ std::string svg(const plot& what) {
     out += axes(what, x, y) + targets(what, x, y);
     for (const plot_series& s : what.series) { out += drawn(s, x, y); }
     return out + names(what, x, y) + "</svg>\n";
+}
+
+std::string svg_file(const plot& what) {
+    const std::string start =
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) + "\"";
+    const std::string drawing = svg(what);
+    if (drawing.rfind("<svg", 0) != 0) {
+        return start + ">\n" + text(left, top, "start", what.title + ": nothing to draw") + "</svg>\n";
+    }
+    const std::size_t inside = drawing.find('\n') + 1;  // behind the opening tag
+    return start + drawing.substr(4, inside - 4) + "<style>" + plot_style + "</style>\n" +
+           "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" + drawing.substr(inside);
 }
 
 }  // namespace error_vs_time

@@ -31,6 +31,12 @@ struct plot {
 /// The plot as an `<svg>` element; points that have no logarithm are left out. A text instead where nothing is left.
 [[nodiscard]] std::string svg(const plot& what);
 
+/// The plot as a file of its own, which browsers and README pages show without help.
+[[nodiscard]] std::string svg_file(const plot& what);
+
+/// What a page that holds plots says about their looks (CSS).
+extern const char* const plot_style;
+
 /// A colour for the i-th series that people with colour-blindness tell apart (Okabe & Ito 2008).
 [[nodiscard]] std::string series_colour(std::size_t i);
 

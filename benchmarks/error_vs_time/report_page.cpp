@@ -20,10 +20,6 @@ h1 { font-size: 28px; margin: 8px 0 4px; } h2 { font-size: 22px; margin: 44px 0 
 p { margin: 4px 0 12px; max-width: 80ch; } .soft { color: var(--soft); }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(480px, 1fr)); gap: 16px; }
 svg.plot { width: 100%; height: auto; background: var(--paper); border: 1px solid var(--line); border-radius: 6px; }
-svg text { font-size: 12px; fill: var(--soft); } svg .title { font-size: 14px; font-weight: 600; fill: var(--ink); }
-svg .name { font-weight: 600; } .grid { stroke: #ececef; } .axis { stroke: #8a8a90; }
-.target { stroke: #9a9aa0; stroke-dasharray: 2 4; } .curve { fill: none; stroke: currentColor; stroke-width: 2; }
-.band { fill: currentColor; opacity: .13; stroke: none; } circle { fill: currentColor; }
 .scroll { overflow-x: auto; margin: 14px 0 22px; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13.5px; min-width: 480px; }
 caption { text-align: left; font-weight: 600; padding: 4px 0 6px; }
@@ -70,7 +66,7 @@ for (const box of document.querySelectorAll('.viewer')) {
 }
 )";
 
-std::string drawn(const study& all, const std::string& scene, const metric& what) {
+plot curves(const study& all, const std::string& scene, const metric& what) {
     plot result{.title = scene + ": " + what.name, .x_label = "CPU seconds", .y_label = what.name};
     result.targets = what.targets;
     const std::vector<std::string> methods = methods_of(all);
@@ -81,11 +77,11 @@ std::string drawn(const study& all, const std::string& scene, const metric& what
         }
         result.series.push_back(std::move(series));
     }
-    return svg(result);
+    return result;
 }
 
 std::string plots(const study& all, const std::string& scene) {
-    return "<div class=\"plots\">" + drawn(all, scene, metrics()[0]) + drawn(all, scene, metrics()[1]) +
+    return "<div class=\"plots\">" + svg(curves(all, scene, metrics()[0])) + svg(curves(all, scene, metrics()[1])) +
            "</div>\n<p class=\"soft\">Curves are medians over seeds, bands reach from the 5 % to the 95 % quantile. "
            "Dotted lines "
            "are the targets of the tables. On logarithmic axes independent samples fall as MAPE ~ t<sup>−½</sup> and "
@@ -178,8 +174,8 @@ std::string report_html(const study& all) {
     std::string out =
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
         "content=\"width=device-width, initial-scale=1\">\n<title>" +
-        escaped(all.title) + "</title>\n<style>" + style + "</style></head>\n<body>\n<h1>" + escaped(all.title) +
-        "</h1>\n<p class=\"soft\">Speed-ups are over “" + escaped(all.baseline) + "”. Version " +
+        escaped(all.title) + "</title>\n<style>" + style + plot_style + "</style></head>\n<body>\n<h1>" +
+        escaped(all.title) + "</h1>\n<p class=\"soft\">Speed-ups are over “" + escaped(all.baseline) + "”. Version " +
         std::to_string(schema_version) + " of the report.</p>\n<nav>";
     for (const scene_note& s : all.scenes) {
         out += "<a href=\"#" + escaped(s.name) + "\">" + escaped(s.name) + "</a>";
@@ -188,6 +184,10 @@ std::string report_html(const study& all) {
     for (const scene_note& s : all.scenes) { out += section(all, s); }
     out += "<h2 id=\"made\">How it was made</h2>\n" + html(provenance(all)) + html(definitions());
     return out + "<script>" + script + "</script>\n</body></html>\n";
+}
+
+std::string report_svg(const study& all, const std::string& scene, const metric& what) {
+    return svg_file(curves(all, scene, what));
 }
 
 std::string report_markdown(const study& all) {

@@ -10,6 +10,9 @@ namespace error_vs_time {
 /// The whole report as one HTML file that asks nothing of a network.
 [[nodiscard]] std::string report_html(const study& all);
 
+/// A scene's curves of one error over CPU seconds, as an SVG file.
+[[nodiscard]] std::string report_svg(const study& all, const std::string& scene, const metric& what);
+
 /// Times to an error, speed-ups and certificates as Markdown tables.
 [[nodiscard]] std::string report_markdown(const study& all);
 

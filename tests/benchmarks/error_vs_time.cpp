@@ -189,6 +189,16 @@ TEST_CASE("report.html: self-contained, every method drawn in both plots of both
     if (const char* file = std::getenv("AGLOW_REPORT_HTML")) { std::ofstream{file} << page; }
 }
 
+TEST_CASE("a scene's curves: an SVG file that needs no page around it, with every method drawn") {
+    const study all = synthetic::study();
+    const std::string file = report_svg(all, all.scenes.front().name, metrics()[1]);
+    CHECK(file.rfind("<svg xmlns=\"http://www.w3.org/2000/svg\"", 0) == 0);
+    CHECK(count(file, "<svg") == 1);
+    CHECK(count(file, "class=\"curve\"") == synthetic::laws().size());
+    CHECK(file.find(".curve {") != std::string::npos);
+    CHECK(report_svg({.title = "nothing"}, "box", metrics()[1]).find("nothing to draw") != std::string::npos);
+}
+
 TEST_CASE("report.html: an empty study is a page too") {
     const std::string page = report_html({.title = "nothing"});
     CHECK(page.find("</html>") != std::string::npos);
