@@ -16,6 +16,7 @@
 #include <aglow/core/simd_avx2.hpp>
 #include <aglow/core/simd_avx512.hpp>
 #include <aglow/core/simd_best.hpp>
+#include <aglow/core/simd_pair.hpp>
 #include <aglow/core/simd_sse.hpp>
 #include <aglow/core/simd_tables.hpp>
 #include <aglow/core/sobol.hpp>

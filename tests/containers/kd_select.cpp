@@ -41,29 +41,29 @@ std::vector<std::uint32_t> ranks(std::uint32_t count) {
     return all;
 }
 
-struct kth_kernel {
-    template <typename P, typename T>
-    [[gnu::always_inline]] static inline T run(std::vector<T> numbers, std::uint32_t k, T bound) {
-        const auto count = static_cast<std::uint32_t>(numbers.size());
-        std::vector<T> spare(count + simd::lanes);
-        std::vector<T> other(count + simd::lanes);
-        numbers.resize(count + simd::lanes);
-        return detail::kth_smallest<P>(numbers.data(), count, k, bound, spare.data(), other.data());
-    }
-};
+template <typename Runner, typename T>
+T kth(std::vector<T> numbers, std::uint32_t k, T bound) {
+    const auto count = static_cast<std::uint32_t>(numbers.size());
+    std::vector<T> spare(count + simd::lanes);
+    std::vector<T> other(count + simd::lanes);
+    numbers.resize(count + simd::lanes);
+    return detail::kth_smallest<Runner>(numbers.data(), count, k, bound, spare.data(), other.data());
+}
 
-struct median_kernel {
-    template <typename P, typename T>
-    [[gnu::always_inline]] static inline detail::kd_rank<T> run(std::vector<T> numbers, std::uint32_t k) {
-        const auto count = static_cast<std::uint32_t>(numbers.size());
-        const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
-        const T least = *low;
-        const T most = *high;
-        numbers.resize(count + simd::lanes, std::numeric_limits<T>::max());
-        detail::kd_room<T> room{count};
-        return detail::find_median<P>(room, numbers.data(), count, k, least, most);
-    }
-};
+template <typename Runner, typename T>
+detail::kd_rank<T> median(std::vector<T> numbers, std::uint32_t k) {
+    const auto count = static_cast<std::uint32_t>(numbers.size());
+    const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
+    const detail::kd_interval<T> range{*low, *high};
+    numbers.resize(count + simd::lanes, std::numeric_limits<T>::max());
+    detail::kd_room<T> room{count};
+    return detail::find_median<Runner>(room, numbers.data(), count, k, range);
+}
+
+template <typename T>
+using best = detail::kd_best_runner<T>;
+template <typename T>
+using one_by_one = detail::kd_pack_runner<simd::plain<T>>;
 
 }  // namespace
 
@@ -77,8 +77,8 @@ TEMPLATE_TEST_CASE("kd_select: the k-th smallest is what sorting finds", "[kd_tr
             for (const std::uint32_t k : ranks(count)) {
                 for (const T bound : {T(1), T(1e9)}) {
                     CAPTURE(how, count, k, bound);
-                    REQUIRE(simd::run_best<T, kth_kernel>(numbers, k, bound) == sorted[k - 1]);
-                    REQUIRE(kth_kernel::run<simd::plain<T>>(numbers, k, bound) == sorted[k - 1]);
+                    REQUIRE(kth<best<T>>(numbers, k, bound) == sorted[k - 1]);
+                    REQUIRE(kth<one_by_one<T>>(numbers, k, bound) == sorted[k - 1]);
                 }
             }
         }
@@ -97,7 +97,7 @@ TEMPLATE_TEST_CASE("kd_median: value, fewer and equal are what counting finds", 
                 CAPTURE(how, count, k);
                 const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), sorted[k - 1]);
                 for (const detail::kd_rank<T>& rank :
-                     {simd::run_best<T, median_kernel>(numbers, k), median_kernel::run<simd::plain<T>>(numbers, k)}) {
+                     {median<best<T>>(numbers, k), median<one_by_one<T>>(numbers, k)}) {
                     REQUIRE(rank.value == sorted[k - 1]);
                     REQUIRE(rank.less == static_cast<std::uint32_t>(first - sorted.begin()));
                     REQUIRE(rank.equal == static_cast<std::uint32_t>(last - first));

@@ -78,10 +78,9 @@ auto ask_all(const Arguments&... arguments) {
     told.push_back(Kernel::template run<simd::plain<T>>(arguments...));
     told.push_back(simd::run_best<T, Kernel>(arguments...));
 #if defined(__x86_64__) && defined(__GNUC__)
-    if constexpr (std::is_same_v<T, float>) {
-        if (__builtin_cpu_supports("avx2")) { told.push_back(simd::run_avx2<Kernel>(arguments...)); }
-        if (__builtin_cpu_supports("sse4.2")) { told.push_back(simd::run_sse<Kernel>(arguments...)); }
-    }
+    using packs = simd::packs_of<T>;
+    if (__builtin_cpu_supports("avx2")) { told.push_back(simd::call<typename packs::avx2, Kernel>(arguments...)); }
+    told.push_back(simd::call<typename packs::any, Kernel>(arguments...));
 #endif
     return told;
 }

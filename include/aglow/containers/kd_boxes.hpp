@@ -7,30 +7,28 @@
 
 #include <aglow/containers/kd_crowd.hpp>
 #include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_select.hpp>
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/simd.hpp>
+#include <aglow/core/simd_best.hpp>
 
 namespace aglow::detail {
 
 /// Tight box of the points of a leaf of which `count` are there.
-template <typename P, typename T>
-[[nodiscard, gnu::always_inline]] inline bounds<T> leaf_box(const kd_leaf<T>& leaf, std::uint32_t count) {
+template <typename T>
+[[nodiscard]] bounds<T> leaf_box(const kd_leaf<T>& leaf, std::uint32_t count) {
     bounds<T> box;
-    if (count < kd_leaf_size) {
-        for (std::uint32_t i = 0; i < count; ++i) { box.add({leaf.x[i], leaf.y[i], leaf.z[i]}); }
-        return box;
-    }
-    P low[3]{P::load(leaf.x), P::load(leaf.y), P::load(leaf.z)};
-    P high[3]{low[0], low[1], low[2]};
-    for (std::uint32_t i = simd::lanes; i < kd_leaf_size; i += simd::lanes) {
-        const P v[3]{P::load(leaf.x + i), P::load(leaf.y + i), P::load(leaf.z + i)};
-        for (int a = 0; a < 3; ++a) {
-            low[a] = P::min(low[a], v[a]);
-            high[a] = P::max(high[a], v[a]);
+    for (int a = 0; a < 3; ++a) {
+        const T* const at = a == 0 ? leaf.x : a == 1 ? leaf.y : leaf.z;
+        if (count < kd_leaf_size) {
+            box.low[a] = *std::min_element(at, at + count);
+            box.high[a] = *std::max_element(at, at + count);
+        } else {
+            const auto [low, high] = range_kernel::run<typename simd::packs_of<T>::any>(at, kd_leaf_size);
+            box.low[a] = low;
+            box.high[a] = high;
         }
     }
-    box.low = {P::smallest(low[0]), P::smallest(low[1]), P::smallest(low[2])};
-    box.high = {P::largest(high[0]), P::largest(high[1]), P::largest(high[2])};
     return box;
 }
 
@@ -52,8 +50,8 @@ template <typename T>
 }
 
 /// Sets the boxes of node i of `level`, whose children are finished, and how crowded it is if those are leaves.
-template <typename P, typename T>
-[[gnu::always_inline]] inline void finish_node(kd_storage<T>& tree, int level, std::uint32_t i) {
+template <typename T>
+void finish_node(kd_storage<T>& tree, int level, std::uint32_t i) {
     kd_node<T>& node = tree.node(level, i);
     const std::uint32_t children = std::min(kd_fan, kd_blocks(tree.size, kd_capacity(level - 1)) - i * kd_fan);
     for (std::uint32_t lane = 0; lane < kd_fan; ++lane) {
@@ -61,7 +59,7 @@ template <typename P, typename T>
         bounds<T> box;
         box.high = box.low;
         if (lane < children && level == 1) {
-            box = leaf_box<P>(tree.leaves[child], std::min(kd_leaf_size, tree.size - child * kd_leaf_size));
+            box = leaf_box(tree.leaves[child], std::min(kd_leaf_size, tree.size - child * kd_leaf_size));
         } else if (lane < children) {
             const std::uint32_t below = kd_blocks(tree.size, kd_capacity(level - 2)) - child * kd_fan;
             box = node_box(tree.node(level - 1, child), std::min(kd_fan, below));

@@ -51,7 +51,7 @@ public:
         });
         for (int level = 1; level <= tree_.height; ++level) {
             for_each_block(run, kd_blocks(tree_.size, kd_capacity(level)), 256, [&](auto, auto first, auto last) {
-                Runner::template run<finish_nodes_kernel>(tree_, level, first, last);
+                for (std::size_t i = first; i < last; ++i) { finish_node(tree_, level, static_cast<std::uint32_t>(i)); }
             });
         }
     }
@@ -88,7 +88,7 @@ private:
         if (r.count <= kd_leaf_size) { return {r, {r.first + r.count, 0, r.side}}; }
         const std::uint32_t left = kd_left_of(r.count);
         const kd_move<T> move{*clouds_[r.side], *clouds_[r.side ^ 1u], r.first, r.count};
-        Runner::template run<halve_kernel>(move, left, mine);
+        detail::halve<Runner>(move, left, mine);
         return {{r.first, left, r.side ^ 1u}, {r.first + left, r.count - left, r.side ^ 1u}};
     }
 

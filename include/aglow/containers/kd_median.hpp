@@ -35,7 +35,7 @@ public:
     [[nodiscard]] T* half(unsigned round) { return halves_[round % 2].get(); }
 
     /// Two numbers of a sample between which the k-th of many is likely to lie.
-    [[gnu::noinline]] std::array<T, 2> sampled(const T* numbers, std::uint32_t count, std::uint32_t k) {
+    [[gnu::noinline]] kd_interval<T> sampled(const T* numbers, std::uint32_t count, std::uint32_t k) {
         const std::uint32_t samples = count >= 64 * most_samples ? most_samples : count >= 2048 ? 256 : kd_few;
         const std::uint32_t step = count / samples;
         for (std::uint32_t i = 0; i < samples; ++i) { sample_[i] = numbers[i * step + step / 2]; }
@@ -55,7 +55,8 @@ private:
 
 /// Two numbers between which the k-th is likely to lie if all are even in [low, high].
 template <typename T>
-[[nodiscard]] std::array<T, 2> expected(std::uint32_t count, std::uint32_t k, T low, T high) {
+[[nodiscard]] kd_interval<T> expected(std::uint32_t count, std::uint32_t k, kd_interval<T> range) {
+    const auto [low, high] = range;
     const T n = static_cast<T>(count);
     const T rank = static_cast<T>(k) - T(0.5);
     const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 1;
@@ -63,71 +64,70 @@ template <typename T>
     return {std::max(low, low + step * (rank - slack)), std::min(high, low + step * (rank + slack))};
 }
 
-template <typename P, typename T>
-[[nodiscard, gnu::always_inline]] inline kd_rank<T> rank_of(const T* numbers, std::uint32_t count, T value,
-                                                            std::uint32_t less) {
-    kd_rank<T> rank{value, less, 0};
-    const P pivot = P::all(value);
-    for (std::uint32_t i = 0; i < count; i += simd::lanes) {
-        const P v = P::load(numbers + i);
-        rank.less += static_cast<std::uint32_t>(std::popcount(P::less(v, pivot)));
-        rank.equal += static_cast<std::uint32_t>(std::popcount(P::equal(v, pivot)));
+/// `value` among many numbers, of which `less` more are less.
+struct rank_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline kd_rank<T> run(const T* numbers, std::uint32_t count, T value,
+                                                        std::uint32_t less) {
+        kd_rank<T> rank{value, less, 0};
+        const P pivot = P::all(value);
+        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+            const P v = P::load(numbers + i);
+            rank.less += P::count(P::less(v, pivot));
+            rank.equal += P::count(P::equal(v, pivot));
+        }
+        return rank;
     }
-    return rank;
-}
+};
 
-/// Copies the numbers larger than `value` to `to` and counts the others.
-template <typename P, typename T>
-[[gnu::always_inline]] inline kd_bracket cut_above(const T* numbers, std::uint32_t count, T value, T* to) {
-    kd_bracket cut{0, 0};
-    const P pivot = P::all(value);
-    for (std::uint32_t i = 0; i < count; i += simd::lanes) {
-        const P v = P::load(numbers + i);
-        const std::uint32_t here = count - i < simd::lanes ? (1u << (count - i)) - 1 : 0xffffu;
-        const std::uint32_t above = P::less(pivot, v) & here;
-        P::compress(to + cut.inside, v, above);
-        cut.inside += static_cast<std::uint32_t>(std::popcount(above));
-        cut.below += static_cast<std::uint32_t>(std::popcount(here & ~above));
+/// Copies the numbers larger than `value` to `to`, pads them and counts the others.
+struct cut_above_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline kd_bracket run(const T* numbers, std::uint32_t count, T value, T* to) {
+        kd_bracket cut{0, 0};
+        const P pivot = P::all(value);
+        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+            const P v = P::load(numbers + i);
+            const std::uint32_t here = count - i < simd::lanes ? (1u << (count - i)) - 1 : 0xffffu;
+            const std::uint32_t above = P::less(pivot, v) & here;
+            P::compress(to + cut.inside, v, above);
+            cut.inside += P::count(above);
+            cut.below += P::count(here & ~above);
+        }
+        P::store(to + cut.inside, P::all(std::numeric_limits<T>::max()));
+        return cut;
     }
-    return cut;
-}
+};
 
 /// The k-th smallest, k from 1, of `count` numbers in [low, high], of which only whole packs are read: what stands
 /// behind the last in its pack must sort last.
-template <typename P, typename T>
-[[gnu::always_inline]] inline kd_rank<T> find_median(kd_room<T>& room, const T* numbers, std::uint32_t count,
-                                                     std::uint32_t k, T low, T high) {
-    constexpr T lowest = std::numeric_limits<T>::lowest();
-    constexpr T highest = std::numeric_limits<T>::max();
+template <typename Runner, typename T>
+kd_rank<T> find_median(kd_room<T>& room, const T* numbers, std::uint32_t count, std::uint32_t k, kd_interval<T> range) {
+    constexpr kd_interval<T> all{std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max()};
     constexpr std::uint32_t sample_from = 4096;
     std::uint32_t less = 0;
     for (unsigned round = 0; count > kd_few; ++round) {
         const bool even = count <= sample_from && round < 6;
-        const auto [from, to] = even ? expected(count, k, low, high) : room.sampled(numbers, count, k);
-        T* inside = room.half(round);
+        const kd_interval<T> guess = even ? expected(count, k, range) : room.sampled(numbers, count, k);
+        T* const inside = room.half(round);
         kd_bracket cut;
-        if (from < to) {
-            cut = cut_bracket<P>(numbers, count, from, to, inside);
-            if (k <= cut.below) {
-                cut = cut_bracket<P>(numbers, count, lowest, from, inside);
-            } else if (k > cut.below + cut.inside) {
-                cut = cut_bracket<P>(numbers, count, to, highest, inside);
-            }
+        if (guess.low < guess.high) {
+            cut = cut_to_rank<Runner>(numbers, count, k, all, guess, inside);
         } else {
-            const kd_rank<T> tie = rank_of<P>(numbers, count, from, less);
+            const kd_rank<T> tie = Runner::template run<rank_kernel>(numbers, count, guess.low, less);
             const std::uint32_t below = tie.less - less;
             if (below < k && k <= below + tie.equal) { return tie; }
-            cut = k <= below ? cut_bracket<P>(numbers, count, lowest, from, inside)
-                             : cut_above<P>(numbers, count, from, inside);
+            cut = k <= below ? Runner::template run<cut_bracket_kernel>(numbers, count, all.low, guess.low, inside)
+                             : Runner::template run<cut_above_kernel>(numbers, count, guess.low, inside);
         }
         less += cut.below;
         k -= cut.below;
         count = cut.inside;
         numbers = inside;
-        pad<P>(inside, count);
-        if (count > kd_few) { std::tie(low, high) = range_of<P>(numbers, count); }
+        if (count > kd_few) { range = Runner::template run<range_kernel>(numbers, count); }
     }
-    return rank_of<P>(numbers, count, kth_by_pairs<P>(numbers, count, k), less);
+    const T kth = Runner::template run<kth_by_pairs_kernel>(numbers, count, k);
+    return Runner::template run<rank_kernel>(numbers, count, kth, less);
 }
 
 }  // namespace aglow::detail

@@ -69,7 +69,7 @@ template <typename P, typename T>
 [[gnu::always_inline]] inline kd_best<T> find_nearest_one(const kd_storage<T>& tree, kd_probe<T>& probe, T limit,
                                                           const kd_filter<T>& filter) {
     kd_best<T> best{limit};
-    go_home<P>(tree, probe);
+    go_home_kernel::run<P>(tree, probe);
     visit_leaf<P>(tree, probe, probe.home[0], best, filter);
     for (int level = 1; level <= tree.height; ++level) {
         const auto l = static_cast<std::size_t>(level);

@@ -70,13 +70,15 @@ template <typename P, typename T>
 }
 
 /// Finds the leaf nearest to the point, greedily, and the distances on the way.
-template <typename P, typename T>
-[[gnu::always_inline]] inline void go_home(const kd_storage<T>& tree, kd_probe<T>& probe) {
-    auto level = static_cast<std::size_t>(tree.height);
-    probe.home[level] = 0;
-    for (; level > 0; --level) { step_home<P>(tree, probe, level); }
-    probe.at_home = true;
-}
+struct go_home_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline void run(const kd_storage<T>& tree, kd_probe<T>& probe) {
+        auto level = static_cast<std::size_t>(tree.height);
+        probe.home[level] = 0;
+        for (; level > 0; --level) { step_home<P>(tree, probe, level); }
+        probe.at_home = true;
+    }
+};
 
 /// Squared radius of about m points, of which `root` is m^(2/3), judged by the leaf where the probe lives: of 32 even
 /// points a square has the diagonal 14.2 / sqrt(m) radii, a cube 8.8 / cbrt(m). Twice as much, to be on the safe side.
@@ -92,9 +94,8 @@ template <typename T>
 }
 
 /// Squared radius within which about k points are expected, and a few more, so that it seldom holds fewer.
-template <typename P, typename T>
-[[nodiscard, gnu::always_inline]] inline T guess_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe,
-                                                         std::uint32_t k) {
+template <typename T>
+[[nodiscard]] T guess_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe, std::uint32_t k) {
     const T wanted = static_cast<T>(k) + 3 * std::sqrt(static_cast<T>(k)) + 1;
     const T root = std::cbrt(wanted * wanted);
     const kd_crowd<T>& crowd = tree.crowds[probe.home[1]];
@@ -102,7 +103,7 @@ template <typename P, typename T>
     // Where a node holds both a crowd and a desert, the leaf knows better.
     const T leaf2 = leaf_radius2(tree, probe, wanted, root);
     if (2 * leaf2 < spread2) { spread2 = leaf2; }
-    const T away2 = P::smallest(P::load(probe.path[1]));
+    const T away2 = probe.path[1][probe.home[0] % kd_fan];
     return away2 > 0 ? away2 + spread2 + 2 * std::sqrt(away2) * std::sqrt(spread2) : spread2;
 }
 
@@ -126,7 +127,8 @@ void start(kd_probe<T>& probe, int level, std::uint32_t node) {
 /// Takes leaves of one place out of `mask` once enough of its points are listed: they come in the order of their rank,
 /// so that those behind can not be among the nearest.
 template <typename T>
-std::uint32_t thin_out(const kd_node<T>& node, kd_probe<T>& probe, std::uint32_t places, std::uint32_t mask) {
+[[gnu::noinline]] std::uint32_t thin_out(const kd_node<T>& node, kd_probe<T>& probe, std::uint32_t places,
+                                         std::uint32_t mask) {
     for (std::uint32_t rest = places & mask; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
         const vec3<T> place{node.low_x[i], node.low_y[i], node.low_z[i]};
@@ -159,7 +161,7 @@ template <typename P, typename T>
             mask = thin_out(tree.node(1, node), probe, tree.crowds[node].places, mask);
         }
         P::compress_numbers(children + count, node * kd_fan, mask);
-        count += static_cast<std::uint32_t>(std::popcount(mask));
+        count += P::count(mask);
     }
     probe.next[level] = last;
     probe.count[level - 1] = count;
@@ -190,23 +192,29 @@ struct kd_list {
     std::uint32_t count, room;
 };
 
-/// Adds the points of the listed leaves that are closer than `bound`, until all leaves are done or the room is.
-template <typename P, typename T>
-[[gnu::always_inline]] inline void scan(const kd_storage<T>& tree, kd_probe<T>& probe, T bound, kd_list<T>& found) {
-    const P limit = P::all(bound);
-    std::uint32_t count = found.count;
-    for (; probe.next[0] < probe.count[0] && count + kd_leaf_size <= found.room; ++probe.next[0]) {
-        const std::uint32_t i = probe.open[0][probe.next[0]];
-        for (std::uint32_t at = 0; at < kd_leaf_size; at += simd::lanes) {
-            const P d = point_distances2<P>(tree.leaves[i], at, probe.point);
-            const std::uint32_t mask = P::less(d, limit);
-            P::compress(found.distances2 + count, d, mask);
-            P::compress_numbers(found.slots + count, i * kd_leaf_size + at, mask);
-            count += static_cast<std::uint32_t>(std::popcount(mask));
+/// Adds the points closer than `bound` of the leaves that come next, as many as there is room for; false when there are
+/// no more.
+struct scan_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline bool run(const kd_storage<T>& tree, kd_probe<T>& probe, T bound,
+                                                  kd_list<T>& found) {
+        if (!advance<P>(tree, probe, bound, 0)) { return false; }
+        const P limit = P::all(bound);
+        std::uint32_t count = found.count;
+        for (; probe.next[0] < probe.count[0] && count + kd_leaf_size <= found.room; ++probe.next[0]) {
+            const std::uint32_t i = probe.open[0][probe.next[0]];
+            for (std::uint32_t at = 0; at < kd_leaf_size; at += simd::lanes) {
+                const P d = point_distances2<P>(tree.leaves[i], at, probe.point);
+                const std::uint32_t mask = P::less(d, limit);
+                P::compress(found.distances2 + count, d, mask);
+                P::compress_numbers(found.slots + count, i * kd_leaf_size + at, mask);
+                count += P::count(mask);
+            }
         }
+        found.count = count;
+        return true;
     }
-    found.count = count;
-}
+};
 
 /// Asks for all that the listed nodes of `level` hold.
 template <typename T>
@@ -232,26 +240,26 @@ struct kd_filter {
 };
 
 /// Collects what is closer than `bound`, or the k nearest of it where that is much more than k.
-template <typename P, typename T>
-[[gnu::always_inline]] inline void collect(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T bound,
-                                           kd_candidates<T>& found, const kd_filter<T>& filter) {
-    while (advance<P>(tree, probe, bound, 0)) {
+template <typename Runner, typename T>
+void collect(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T bound, kd_candidates<T>& found,
+             const kd_filter<T>& filter) {
+    kd_list<T> list{found.distances2.data(), found.slots.data(), found.count = 0, found.capacity()};
+    while (Runner::template run<scan_kernel>(tree, probe, bound, list)) {
         const std::uint32_t before = found.count;
-        kd_list<T> list{found.distances2.data(), found.slots.data(), before, found.capacity()};
-        scan<P>(tree, probe, bound, list);
         found.count = list.count;
         if (filter.refuse != nullptr) { filter.refuse(filter.caller, found, before); }
-        if (found.count + kd_leaf_size > found.capacity()) {
-            bound = std::min(bound, simd::next_above(keep_nearest<P>(tree, found, k, bound)));
+        if (found.count + kd_leaf_size > list.room) {
+            bound = std::min(bound, simd::next_above(keep_nearest<Runner>(tree, found, k, bound)));
         }
+        list.count = found.count;
     }
 }
 
 /// Squared radius that surely holds all points of the smallest node around the probe with k points, from `level` up;
 /// `limit` where there is none.
-template <typename P, typename T>
-[[nodiscard]] T covering_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe, std::uint32_t k, int level,
-                                 T limit) {
+template <typename T>
+[[nodiscard, gnu::noinline]] T covering_radius2(const kd_storage<T>& tree, const kd_probe<T>& probe, std::uint32_t k,
+                                                int level, T limit) {
     for (; level < tree.height; ++level) {
         const std::uint32_t home = probe.home[static_cast<std::size_t>(level)];
         const std::uint64_t first = kd_capacity(level) * home;
@@ -268,30 +276,28 @@ template <typename P, typename T>
 }
 
 /// The radius to try after one that held too few.
-template <typename P, typename T>
-[[nodiscard, gnu::always_inline]] inline T larger_radius2(const kd_storage<T>& tree, kd_probe<T>& probe,
-                                                          std::uint32_t k, std::uint32_t had, int attempt, T radius2,
-                                                          T limit) {
+template <typename Runner, typename T>
+[[nodiscard]] T larger_radius2(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, std::uint32_t had,
+                               int attempt, T radius2, T limit) {
     if (attempt == 0 && had * 4 >= k && had > 0) {
         const T wanted = static_cast<T>(k) + 2 * std::sqrt(static_cast<T>(k)) + 1;
         return radius2 * (T(1.25) * wanted / static_cast<T>(had));
     }
-    if (!probe.at_home) { go_home<P>(tree, probe); }
-    return std::max(covering_radius2<P>(tree, probe, k, attempt, limit), radius2);
+    if (!probe.at_home) { Runner::template run<go_home_kernel>(tree, probe); }
+    return std::max(covering_radius2(tree, probe, k, attempt, limit), radius2);
 }
 
 /// Finds the k nearest accepted points closer than `limit`, starting with a radius of about `radius2`; returns the
 /// distance2 of the k-th, or `limit` when there are fewer. The probe stands at its start.
-template <typename P, typename T>
-[[gnu::always_inline]] inline T find_nearest(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T radius2,
-                                             T limit, kd_candidates<T>& found, const kd_filter<T>& filter) {
+template <typename Runner, typename T>
+T find_nearest(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, T radius2, T limit,
+               kd_candidates<T>& found, const kd_filter<T>& filter) {
     for (int attempt = 0;; ++attempt) {
         radius2 = std::min(radius2, limit);
-        found.count = 0;
-        collect<P>(tree, probe, k, radius2, found, filter);
-        if (found.count >= k) { return keep_nearest<P>(tree, found, k, radius2); }
+        collect<Runner>(tree, probe, k, radius2, found, filter);
+        if (found.count >= k) { return keep_nearest<Runner>(tree, found, k, radius2); }
         if (radius2 >= limit || attempt > kd_max_height) { return limit; }
-        radius2 = larger_radius2<P>(tree, probe, k, found.count, attempt, radius2, limit);
+        radius2 = larger_radius2<Runner>(tree, probe, k, found.count, attempt, radius2, limit);
         start(probe, tree.height, 0);
     }
 }

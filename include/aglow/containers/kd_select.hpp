@@ -11,74 +11,101 @@
 
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/core/simd.hpp>
+#include <aglow/core/simd_best.hpp>
 
 namespace aglow::detail {
+
+/// Runs kernels with the best pack of the machine.
+template <typename T>
+struct kd_best_runner {
+    template <typename Kernel, typename... Arguments>
+    [[gnu::always_inline]] static inline auto run(Arguments&&... arguments) {
+        return simd::run_best<T, Kernel>(arguments...);
+    }
+};
+
+/// Runs kernels with one pack.
+template <typename P>
+struct kd_pack_runner {
+    template <typename Kernel, typename... Arguments>
+    [[gnu::always_inline]] static inline auto run(Arguments&&... arguments) {
+        return simd::call<P, Kernel>(arguments...);
+    }
+};
 
 /// Up to this many numbers are ranked by comparing all pairs.
 inline constexpr std::uint32_t kd_few = 32;
 
 /// Fills the sixteen places behind `count` numbers with what sorts last.
-template <typename P, typename T>
-[[gnu::always_inline]] inline void pad(T* numbers, std::uint32_t count) {
-    P::store(numbers + count, P::all(std::numeric_limits<T>::max()));
+template <typename T>
+void pad(T* numbers, std::uint32_t count) {
+    std::fill_n(numbers + count, std::size_t{simd::lanes}, std::numeric_limits<T>::max());
 }
 
 /// The k-th smallest, k from 1, of padded numbers.
-template <typename P, typename T>
-[[nodiscard, gnu::always_inline]] inline T kth_by_pairs(const T* numbers, std::uint32_t count, std::uint32_t k) {
-    T kth = numbers[0];
-    bool first = true;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const P pivot = P::all(numbers[i]);
-        std::uint32_t below = 0;
-        for (std::uint32_t j = 0; j < count; j += simd::lanes) {
-            below += static_cast<std::uint32_t>(std::popcount(P::less(P::load(numbers + j), pivot)));
+struct kth_by_pairs_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline T run(const T* numbers, std::uint32_t count, std::uint32_t k) {
+        T kth = numbers[0];
+        bool first = true;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const P pivot = P::all(numbers[i]);
+            std::uint32_t below = 0;
+            for (std::uint32_t j = 0; j < count; j += simd::lanes) {
+                below += P::count(P::less(P::load(numbers + j), pivot));
+            }
+            if (below < k && (first || kth < numbers[i])) {
+                kth = numbers[i];
+                first = false;
+            }
         }
-        if (below < k && (first || kth < numbers[i])) {
-            kth = numbers[i];
-            first = false;
-        }
+        return kth;
     }
-    return kth;
-}
+};
 
 struct kd_bracket {
     std::uint32_t below, inside;
 };
 
-/// Copies the padded numbers in [low, high) to `to` and counts those below.
-template <typename P, typename T>
-[[gnu::always_inline]] inline kd_bracket cut_bracket(const T* numbers, std::uint32_t count, T low, T high, T* to) {
-    const P low16 = P::all(low);
-    const P high16 = P::all(high);
-    kd_bracket cut{0, 0};
-    for (std::uint32_t i = 0; i < count; i += simd::lanes) {
-        const P v = P::load(numbers + i);
-        const std::uint32_t below = P::less(v, low16);
-        const std::uint32_t inside = P::less(v, high16) & ~below;
-        P::compress(to + cut.inside, v, inside);
-        cut.below += static_cast<std::uint32_t>(std::popcount(below));
-        cut.inside += static_cast<std::uint32_t>(std::popcount(inside));
+/// Copies the padded numbers in [low, high) to `to`, pads them and counts those below.
+struct cut_bracket_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline kd_bracket run(const T* numbers, std::uint32_t count, T low, T high, T* to) {
+        const P low16 = P::all(low);
+        const P high16 = P::all(high);
+        kd_bracket cut{0, 0};
+        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+            const P v = P::load(numbers + i);
+            const std::uint32_t below = P::less(v, low16);
+            const std::uint32_t inside = P::less(v, high16) & ~below;
+            P::compress(to + cut.inside, v, inside);
+            cut.below += P::count(below);
+            cut.inside += P::count(inside);
+        }
+        P::store(to + cut.inside, P::all(std::numeric_limits<T>::max()));
+        return cut;
     }
-    return cut;
-}
+};
 
-/// The smallest and the largest of numbers padded with what sorts last.
-template <typename P, typename T>
-[[nodiscard, gnu::always_inline]] inline std::pair<T, T> range_of(const T* numbers, std::uint32_t count) {
-    P low = P::load(numbers);
-    P high = P::all(numbers[0]);
-    for (std::uint32_t i = 0; i + simd::lanes <= count; i += simd::lanes) {
-        const P v = P::load(numbers + i);
-        low = P::min(low, v);
-        high = P::max(high, v);
+template <typename T>
+struct kd_interval {
+    T low, high;
+};
+
+/// The smallest and the largest of sixteen numbers or more; what stands behind the last is not read.
+struct range_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline kd_interval<T> run(const T* numbers, std::uint32_t count) {
+        P low = P::load(numbers + (count - simd::lanes));
+        P high = low;
+        for (std::uint32_t i = 0; i + simd::lanes <= count; i += simd::lanes) {
+            const P v = P::load(numbers + i);
+            low = P::min(low, v);
+            high = P::max(high, v);
+        }
+        return {P::smallest(low), P::largest(high)};
     }
-    std::pair<T, T> range{P::smallest(low), P::largest(high)};
-    for (std::uint32_t i = count / simd::lanes * simd::lanes; i < count; ++i) {
-        range = {std::min(range.first, numbers[i]), std::max(range.second, numbers[i])};
-    }
-    return range;
-}
+};
 
 /// The k-th smallest of any numbers, by way of a copy.
 template <typename T>
@@ -88,17 +115,28 @@ template <typename T>
     return copy[k - 1];
 }
 
+/// Copies those of padded numbers in `all` to `to` that the k-th is among: these in `guess`, or those at one side of
+/// it.
+template <typename Runner, typename T>
+kd_bracket cut_to_rank(const T* numbers, std::uint32_t count, std::uint32_t k, kd_interval<T> all, kd_interval<T> guess,
+                       T* to) {
+    const kd_bracket cut = Runner::template run<cut_bracket_kernel>(numbers, count, guess.low, guess.high, to);
+    if (cut.below < k && k <= cut.below + cut.inside) { return cut; }
+    const kd_interval<T> side =
+        k <= cut.below ? kd_interval<T>{all.low, guess.low} : kd_interval<T>{guess.high, all.high};
+    return Runner::template run<cut_bracket_kernel>(numbers, count, side.low, side.high, to);
+}
+
 /// The k-th smallest, k from 1, of numbers in [0, bound), which must be roughly even to be fast.
 /// `numbers` and the two spares have room for sixteen more.
-template <typename P, typename T>
-[[nodiscard, gnu::always_inline]] inline T kth_smallest(T* numbers, std::uint32_t count, std::uint32_t k, T bound,
-                                                        T* spare, T* other) {
+template <typename Runner, typename T>
+[[nodiscard]] T kth_smallest(T* numbers, std::uint32_t count, std::uint32_t k, T bound, T* spare, T* other) {
     T low = 0;
     T high = bound;
-    pad<P>(numbers, count);
+    pad(numbers, count);
     for (int round = 0; count > kd_few && round < 5; ++round) {
         if (round > 0) {
-            const auto [least, most] = range_of<P>(numbers, count);
+            const auto [least, most] = Runner::template run<range_kernel>(numbers, count);
             if (least == most) { return least; }
             low = least;
             high = simd::next_above(most);
@@ -109,24 +147,13 @@ template <typename P, typename T>
         const T step = (high - low) / n;
         const T from = std::max(low, low + step * (rank - slack));
         const T to = std::min(high, low + step * (rank + slack));
-        kd_bracket cut = cut_bracket<P>(numbers, count, from, to, spare);
-        if (k <= cut.below) {
-            cut = cut_bracket<P>(numbers, count, low, from, spare);
-            high = from;
-        } else if (k <= cut.below + cut.inside) {
-            low = from;
-            high = to;
-        } else {
-            cut = cut_bracket<P>(numbers, count, to, high, spare);
-            low = to;
-        }
+        const kd_bracket cut = cut_to_rank<Runner>(numbers, count, k, {low, high}, {from, to}, spare);
         k -= cut.below;
         count = cut.inside;
-        pad<P>(spare, count);
         numbers = spare;
         std::swap(spare, other);
     }
-    if (count <= kd_few) { return kth_by_pairs<P>(numbers, count, k); }
+    if (count <= kd_few) { return Runner::template run<kth_by_pairs_kernel>(numbers, count, k); }
     return kth_by_moving(numbers, count, k, spare);
 }
 
@@ -147,21 +174,23 @@ struct kd_candidates {
     [[nodiscard]] std::uint32_t capacity() const { return static_cast<std::uint32_t>(slots.size()) - simd::lanes; }
 };
 
-/// Keeps the candidates closer than `bound`.
-template <typename P, typename T>
-[[gnu::always_inline]] inline void keep_below(kd_candidates<T>& found, T bound) {
-    const P limit = P::all(bound);
-    pad<P>(found.distances2.data(), found.count);
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < found.count; i += simd::lanes) {
-        const P v = P::load(found.distances2.data() + i);
-        const std::uint32_t mask = P::less(v, limit);
-        P::compress(found.distances2.data() + kept, v, mask);
-        P::compress(found.slots.data() + kept, found.slots.data() + i, mask);
-        kept += static_cast<std::uint32_t>(std::popcount(mask));
+/// Keeps those of padded candidates that are closer than `bound`; returns how many.
+struct keep_below_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline std::uint32_t run(T* distances2, std::uint32_t* slots, std::uint32_t count,
+                                                           T bound) {
+        const P limit = P::all(bound);
+        std::uint32_t kept = 0;
+        for (std::uint32_t i = 0; i < count; i += simd::lanes) {
+            const P v = P::load(distances2 + i);
+            const std::uint32_t mask = P::less(v, limit);
+            P::compress(distances2 + kept, v, mask);
+            P::compress(slots + kept, slots + i, mask);
+            kept += P::count(mask);
+        }
+        return kept;
     }
-    found.count = kept;
-}
+};
 
 /// Keeps k of the candidates, which are no farther than `farthest`: of those just as far, the lowest by rank.
 template <typename T>
@@ -186,12 +215,12 @@ template <typename T>
 }
 
 /// Keeps the k nearest of at least k candidates, all closer than `bound`, and returns the distance2 of the k-th.
-template <typename P, typename T>
-[[gnu::always_inline]] inline T keep_nearest(const kd_storage<T>& tree, kd_candidates<T>& found, std::uint32_t k,
-                                             T bound) {
-    const T farthest =
-        kth_smallest<P>(found.distances2.data(), found.count, k, bound, found.spare.data(), found.other.data());
-    keep_below<P>(found, simd::next_above(farthest));
+template <typename Runner, typename T>
+T keep_nearest(const kd_storage<T>& tree, kd_candidates<T>& found, std::uint32_t k, T bound) {
+    T* const distances2 = found.distances2.data();
+    const T farthest = kth_smallest<Runner>(distances2, found.count, k, bound, found.spare.data(), found.other.data());
+    found.count = Runner::template run<keep_below_kernel>(distances2, found.slots.data(), found.count,
+                                                          simd::next_above(farthest));
     if (found.count > k) { break_ties(tree, found, farthest, k); }
     return farthest;
 }

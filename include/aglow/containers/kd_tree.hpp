@@ -159,16 +159,13 @@ public:
 private:
     static constexpr std::size_t group = 8;
     using task = detail::kd_task<T>;
+    using runner = detail::kd_best_runner<T>;
 
     /// What a search comes down to; `count` is 0 where nothing can be found.
     [[nodiscard]] task task_of(std::size_t k, kd_reach<T> reach) const {
         const T limit = std::min(reach.radius2, std::numeric_limits<T>::max());
         const auto count = limit > 0 ? static_cast<std::uint32_t>(std::min<std::size_t>(k, size())) : 0;
         return {count, limit, reach.hint2};
-    }
-    template <typename Kernel, typename... Arguments>
-    static auto run(Arguments&&... arguments) {
-        return detail::kd_best_runner<T>::template run<Kernel>(arguments...);
     }
 
     template <typename Accept>
@@ -259,7 +256,7 @@ kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scr
     detail::kd_probe<T>& probe = scratch.probes_.front();
     probe.point = point;
     probe.enough = enough<Accept>(what);
-    const T farthest = run<detail::nearest_kernel>(tree_, probe, what, scratch.found_, filter_of(accept));
+    const T farthest = detail::search<runner>(tree_, probe, what, scratch.found_, filter_of(accept));
     return view(scratch.found_, k, farthest, reach);
 }
 
@@ -281,11 +278,12 @@ void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scra
             probes[i].point = points[first + i];
             probes[i].enough = enough<Accept>(what);
         }
-        run<detail::approach_kernel>(tree_, probes, what, std::span<T>{radius2});
+        runner::template run<detail::approach_kernel>(tree_, probes, what, std::span<T>{radius2});
         for (std::size_t i = 0; i < probes.size(); ++i) {
             auto accepts_here = [&, at = first + i](kd_slot slot) { return accept(at, slot); };
             const auto filter = accepts_all<Accept> ? detail::kd_filter<T>{} : filter_of(accepts_here);
-            const T farthest = run<detail::finish_kernel>(tree_, probes[i], what, radius2[i], scratch.found_, filter);
+            const T farthest = detail::find_nearest<runner>(tree_, probes[i], what.count, radius2[i], what.limit,
+                                                            scratch.found_, filter);
             visit(first + i, view(scratch.found_, k, farthest, reach));
         }
     }
@@ -300,7 +298,7 @@ std::optional<kd_found<T>> kd_tree<T>::nearest_one(const vec3<T>& point, T radiu
     probe.point = point;
     probe.enough = enough<Accept>(what);
     probe.at_home = true;
-    const auto best = run<detail::nearest_one_kernel>(tree_, probe, what.limit, filter_of(accept));
+    const auto best = runner::template run<detail::nearest_one_kernel>(tree_, probe, what.limit, filter_of(accept));
     if (!best.found) { return std::nullopt; }
     return kd_found<T>{best.slot, best.distance2};
 }
@@ -319,8 +317,9 @@ void kd_tree<T>::within(const vec3<T>& point, T radius2, Visit&& visit) const {
     T distances2[room + simd::lanes];
     kd_slot slots[room + simd::lanes];
     detail::kd_list<T> found{distances2, slots, 0, room};
-    while (run<detail::scan_kernel>(tree_, probe, what.limit, found)) {
+    while (runner::template run<detail::scan_kernel>(tree_, probe, what.limit, found)) {
         for (std::uint32_t i = 0; i < found.count; ++i) { visit(slots[i], distances2[i]); }
+        found.count = 0;
     }
 }
 

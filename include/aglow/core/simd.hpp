@@ -117,6 +117,8 @@ struct plain {
         a.v[lane] = std::numeric_limits<T>::max();
         return a;
     }
+    /// How many lanes a mask has.
+    static std::uint32_t count(std::uint32_t mask) { return static_cast<std::uint32_t>(std::popcount(mask)); }
     /// Writes the lanes of `mask` one after another. All sixteen places from `to` may be overwritten.
     static void compress(T* to, const plain& a, std::uint32_t mask) { squeeze(to, a.v, mask); }
     /// As compress, for whole numbers.
