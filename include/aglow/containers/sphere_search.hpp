@@ -264,8 +264,12 @@ template <unsigned Lanes, typename Question, bool D>
     requires(Lanes <= simd::lanes)
 void ask(const sphere_block<float, Lanes>& block, std::uint32_t count, const Question& question,
          sphere_hits<float, D>& found) {
-    const auto ready = static_cast<__mmask16>((1u << count) - 1u);
-    const auto load = [ready](const float* from) { return simd::avx512{_mm512_maskz_loadu_ps(ready, from)}; };
+    const auto ready = static_cast<std::uint16_t>((1u << count) - 1u);
+    const auto load = [ready](const float(&from)[Lanes]) {
+        simd::avx512 a;
+        asm("vmovups %1, %0%{%2%}%{z%}" : "=v"(a.v) : "m"(from), "Yk"(ready));
+        return a;
+    };
     const auto from_point = [](simd::avx512 a, float p) { return simd::avx512::sub(a, simd::avx512::all(p)); };
     const simd::avx512 distances2 =
         simd::avx512::length2(from_point(load(block.x), question.point.x), from_point(load(block.y), question.point.y),
