@@ -70,6 +70,7 @@
 #include <aglow/estimators/record_blend.hpp>
 #include <aglow/estimators/record_neighbours.hpp>
 #include <aglow/estimators/record_reach.hpp>
+#include <aglow/estimators/record_sharing.hpp>
 
 // algorithms: light on its way
 #include <aglow/algorithms/cache_candidates.hpp>

@@ -21,6 +21,8 @@ ray<float> eye_of(const vec2<float>& film) {
 struct seen {
     running_mean level{};
     running_mean guess{};
+    running_mean common{};
+    running_mean bias{};
 };
 
 template <typename Integrator>
@@ -31,6 +33,8 @@ seen look(const Integrator& integrator) {
         const auto e = integrator(eye_of({float(i % 8) + 0.5f, float(i / 8) + 0.5f}), numbers);
         result.level.add(static_cast<double>(e.value));
         result.guess.add(static_cast<double>(e.error));
+        result.common.add(static_cast<double>(e.common));
+        result.bias.add(static_cast<double>(e.bias));
     }
     return result;
 }
@@ -54,16 +58,20 @@ TEST_CASE("cache_integrators: a furnace is 1 / (1 - rho) bright, its gather rays
         const seen by_photons = look(by_map);
         CAPTURE(albedo, truth, by_paths.level.mean(), by_paths.guess.mean(), by_photons.level.mean(),
                 by_photons.guess.mean());
-        const auto check = [&](const seen& s, double chance) {
-            chance += 4 * s.level.standard_error() + 1e-5 * truth;
-            CHECK(std::abs(s.level.mean() - truth) <= s.guess.mean() + chance);
+        for (const seen& s : {by_paths, by_photons}) {
+            const double common = s.common.mean();
+            const double chance = 4 * (s.level.standard_error() + common) + 1e-5 * truth;
+            CHECK(std::abs(s.level.mean() - truth) <= std::abs(s.bias.mean()) + chance);
+            CHECK(s.guess.mean() >= 2 * common);
             CHECK(s.guess.mean() < 0.15 * truth);
-        };
-        check(by_paths, 0);
-        // What all records have in common, no guess can know: the flux of all photons. A path lands k times after its
-        // first landing with probability (1 - rho) rho^k, so the sum's relative deviation is 1 / sqrt(rho paths); four
-        // of them.
-        const double paths = static_cast<double>(by_map.maps().indirect.paths);
-        check(by_photons, albedo > 0 ? 4 * (truth - 1) / std::sqrt(static_cast<double>(albedo) * paths) : 0);
+        }
+        // What all photons have in common: a path lands k times after its first landing with probability
+        // (1 - rho) rho^k, so the sum's relative deviation is 1 / sqrt(rho paths). A gather reads a share rho of it.
+        const auto& indirect = by_map.maps().indirect;
+        if (albedo > 0) {
+            const double share = 1 / std::sqrt(static_cast<double>(albedo) * static_cast<double>(indirect.paths));
+            CHECK(indirect.common == Approx(share).epsilon(0.1));
+            CHECK(by_photons.common.mean() > 0.9 * share * square(static_cast<double>(albedo)) * (truth - 1));
+        }
     }
 }

@@ -1,9 +1,13 @@
 #include <aglow/algorithms/film.hpp>
 
 #include <atomic>
+#include <bit>
+#include <cmath>
 #include <limits>
 
 #include <glm/vec3.hpp>
+
+#include <aglow/report/running_mean.hpp>
 
 #include "support/archetypes.hpp"
 #include "support/catch.hpp"
@@ -178,4 +182,43 @@ TEST_CASE("film: light brighter by a power of two gives picture and error bright
         CHECK(there.radiance(1, 2) == here.radiance(1, 2) * s);
         CHECK(there.error(1, 2) == here.error(1, 2) * s);
     }
+}
+
+TEST_CASE("film: what all samples have in common does not average out of the mean, unless each exposure's is its own") {
+    // Of every exposure: half of a map's error of 0.125 everywhere, and no noise else.
+    const painter even{[](const ray<float>&, const auto&) { return estimate<S>{S{1}, 0.5f, 0.125f, -0.25f}; }};
+    for (const bool fresh : {false, true}) {
+        film<S> picture{8, 4};
+        for (int i = 0; i < 4; ++i) { picture.expose(flat_eye, even, {.samples = 2, .fresh = fresh}); }
+        const mean_error error = picture.error_of_mean();
+        CHECK(error.bias == -0.25);
+        CHECK(error.noise == Approx(fresh ? 0.0625 : 0.125).epsilon(1e-12));
+        CHECK(error.within(2) == Approx(0.25 + 2 * error.noise).epsilon(1e-12));
+        // A pixel: its guess, or where maps are fresh, its bias alone, since its samples' spread would tell the rest.
+        CHECK(picture.error(3, 2) == (fresh ? 0.25f : 0.5f));
+    }
+    CHECK(film<S>{2, 2}.error_of_mean().within() == 0);
+}
+
+TEST_CASE("film: the noise of samples is in the error of the mean, as far as it strays") {
+    running_mean mean;
+    running_mean noise_said;
+    for (std::uint64_t seed = 0; seed < 64; ++seed) {
+        film<S> picture{8, 8};
+        // Numbers that no set of samples evens out.
+        const painter coin{[&](const ray<float>& r, const auto&) {
+            const float x = static_cast<float>(mix(seed, std::bit_cast<std::uint32_t>(r.origin.x) * 31ull +
+                                                             std::bit_cast<std::uint32_t>(r.origin.y)) %
+                                               1024) /
+                            1024;
+            return estimate<S>{S{x}, 0};
+        }};
+        picture.expose(flat_eye, coin, {.samples = 4, .seed = seed});
+        double sum = 0;
+        for (std::size_t i = 0; i < 64; ++i) { sum += static_cast<double>(picture.radiance(i % 8, i / 8).x) / 64; }
+        mean.add(sum);
+        noise_said.add(picture.error_of_mean().noise);
+    }
+    // A standard deviation of 64 is known to 9 %.
+    CHECK(std::sqrt(mean.variance()) == Approx(noise_said.mean()).epsilon(0.35));
 }

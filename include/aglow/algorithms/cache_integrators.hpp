@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <aglow/algorithms/cache_candidates.hpp>
 #include <aglow/algorithms/fill_cache.hpp>
@@ -53,8 +54,10 @@ struct map_reader {
 template <typename Cache, typename Reader>
 class cache_layer {
 public:
-    cache_layer(const Cache& cache, Reader reader, const hemisphere_shape& fallback = {2, 8})
-        : cache_{cache}, reader_{reader}, fallback_{fallback} {}
+    /// `shared`: what all that `reader` brings is off by together.
+    cache_layer(const Cache& cache, Reader reader, const shared_error& shared = {},
+                const hemisphere_shape& fallback = {2, 8})
+        : cache_{cache}, reader_{reader}, shared_{shared}, fallback_{fallback} {}
 
     template <Surface H, Numbers N>
     [[nodiscard]] estimate<surface_spectrum<H>> operator()(const H& hit, const vec3<hit_scalar<H>>& wo,
@@ -64,19 +67,35 @@ public:
         using T = hit_scalar<H>;
         return diffuse_radiance(hit, wo, [&](const vec3<T>& side) -> estimate<S> {
             const auto answer = cache_.lookup(vec3<T>(hit.position), side);
-            if (answer) { return {answer.irradiance, static_cast<band_of<S>>(answer.error)}; }
+            if (answer) { return shared_.on(answer.irradiance, static_cast<band_of<S>>(answer.error)); }
             const gather_point<T> here{vec3<T>(hit.position), side, error};
             S gathered = gather_once(reader_, here, N{numbers.fork(bounce)}, fallback_);
             if constexpr (KnowsUnseen<Reader, T>) { gathered = gathered + reader_.unseen(here); }
-            return {gathered, max_component(gathered) / std::sqrt(static_cast<band_of<S>>(fallback_.count()))};
+            return shared_.on(gathered,
+                              max_component(gathered) / std::sqrt(static_cast<band_of<S>>(fallback_.count())));
         });
     }
 
 private:
     const Cache& cache_;
     Reader reader_;
+    shared_error shared_;
     hemisphere_shape fallback_;
 };
+
+namespace detail {
+
+/// What a picture from `cache` is off by everywhere, told from a thousand of the places that it was made for.
+template <typename Cache, std::floating_point T>
+[[nodiscard]] shared_error shared_at(const Cache& cache, const std::vector<cache_candidate<T>>& places) {
+    constexpr std::size_t enough = 1024;
+    std::vector<gather_point<T>> some;
+    const std::size_t step = 1 + places.size() / enough;
+    for (std::size_t i = step / 2; i < places.size(); i += step) { some.push_back(places[i].place); }
+    return cache.shared(some);
+}
+
+}  // namespace detail
 
 /// What a cached picture is made of, whatever answers the gather rays.
 struct caching_options {
@@ -103,6 +122,7 @@ public:
         irradiance_cache<spectrum, scalar> cache{scene_bounds, options.cache};
         const auto places = cache_candidates(scene, eye, options.view, run);
         filled_ = fill_cache(cache, places, path_reader<World, Lights>{source_}, options.fill, run);
+        shared_ = detail::shared_at(cache, places);
         cache_ = cache.freeze(run);
     }
 
@@ -110,12 +130,14 @@ public:
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
-                               cache_layer{cache_, path_reader<World, Lights>{source_}}};
+                               cache_layer{cache_, path_reader<World, Lights>{source_}, shared_}};
         return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
     }
 
     [[nodiscard]] const cache_type& cache() const { return cache_; }
     [[nodiscard]] const fill_result& filled() const { return filled_; }
+    /// What all that is read from the cache is off by together.
+    [[nodiscard]] const shared_error& shared() const { return shared_; }
 
 private:
     const World& scene_;
@@ -124,6 +146,7 @@ private:
     path_tracer<World, Lights> source_;
     cache_type cache_{};
     fill_result filled_{};
+    shared_error shared_{};
 };
 
 /// What the classical combination is made of.
@@ -159,6 +182,7 @@ public:
         irradiance_cache<spectrum, scalar> cache{scene_bounds, options.caching.cache};
         const auto places = cache_candidates(scene, eye, options.caching.view, run);
         filled_ = fill_cache(cache, places, reader(), options.caching.fill, run);
+        shared_ = base_.points().shared() + detail::shared_at(cache, places);
         cache_ = cache.freeze(run);
     }
 
@@ -167,7 +191,7 @@ public:
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.caching.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
-                               cache_layer{cache_, reader()}};
+                               cache_layer{cache_, reader(), shared_}};
         return layered_integrator{scene_, lights_, layers, options_.caching.paths}(eye, numbers);
     }
 
@@ -175,6 +199,8 @@ public:
     [[nodiscard]] const irradiance_points<spectrum, scalar>& points() const { return base_.points(); }
     [[nodiscard]] const cache_type& cache() const { return cache_; }
     [[nodiscard]] const fill_result& filled() const { return filled_; }
+    /// What all that is read from the cache is off by together.
+    [[nodiscard]] const shared_error& shared() const { return shared_; }
 
 private:
     [[nodiscard]] map_reader<World, Lights> reader() const {
@@ -190,6 +216,7 @@ private:
     gather_base<World, Lights> base_;
     cache_type cache_{};
     fill_result filled_{};
+    shared_error shared_{};
 };
 
 }  // namespace aglow

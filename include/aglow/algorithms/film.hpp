@@ -21,7 +21,19 @@ struct film_options {
     std::uint32_t samples{16};  ///< samples per pixel to add; sets of a power of two are spread best
     std::uint64_t seed{0};
     std::uint64_t pass{0};
+    bool fresh{false};  ///< the integrator's maps are new ones: what its samples have in common is not what earlier
+                        ///< ones had, and the spread of samples tells all noise
     std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
+};
+
+/// How far the mean of a whole picture may be off, W/(m² sr): its pixels' errors do not average out where they have
+/// them in common.
+struct mean_error {
+    double bias{0};   ///< by how much it may be too bright, with its sign
+    double noise{0};  ///< one standard deviation: of the samples, and of what they have in common
+
+    /// A guess of the whole error, the noise at so many standard deviations.
+    [[nodiscard]] double within(double sigmas = 2) const { return std::abs(bias) + sigmas * noise; }
 };
 
 /// Pixels of mean radiance over a box of one pixel, row 0 on top. Samples without a finite value are left out and
@@ -48,14 +60,29 @@ public:
     }
 
     /// A guess of a pixel's error: the mean of what the integrator guessed, and the standard error of its samples.
+    /// Where every exposure was fresh, that error tells the maps' noise too: the bias, and twice that error.
     [[nodiscard]] B error(std::size_t x, std::size_t y) const {
         const pixel& p = pixels_[y * width_ + x];
         if (p.count == 0) { return B(0); }
         const double n = p.count;
-        const double mean = p.level / n;
         // One sample alone may be off by all of itself.
-        const double error = p.count == 1 ? mean : std::sqrt(std::max(0.0, p.level2 / n - mean * mean) / (n - 1));
-        return static_cast<B>(p.guess / n + error);
+        const double error = p.count == 1 ? p.level : std::sqrt(p.variance());
+        return static_cast<B>(fresh_ && p.count > 1 ? std::abs(p.bias) / n + 2 * error : p.guess / n + error);
+    }
+
+    /// A guess of the error of the mean of all pixels: what the integrator says that its estimates have in common, and
+    /// the noise of the samples. Of the largest band.
+    [[nodiscard]] mean_error error_of_mean() const {
+        double count = 0;
+        double bias = 0;
+        double variance = 0;
+        for (const pixel& p : pixels_) {
+            count += p.count;
+            bias += p.bias;
+            variance += p.count > 1 ? square(static_cast<double>(p.count)) * p.variance() : square(p.level);
+        }
+        if (count == 0) { return {}; }
+        return {bias / count, std::sqrt(variance + common2_ + square(common_)) / count};
     }
 
     /// Adds samples: `eye(film_point)` is the ray through a point in pixels, `integrator(ray, numbers)` an `estimate`
@@ -65,12 +92,17 @@ public:
         std::atomic<std::size_t> rows{0};
         std::atomic<std::uint64_t> dropped{0};
         std::atomic<bool> stop{false};
+        std::vector<double> common(height_);
         run(height_, [&](std::size_t y) {
             if (stop) { return; }
-            for (std::size_t x = 0; x < width_; ++x) { dropped += take(x, y, eye, integrator, options); }
+            for (std::size_t x = 0; x < width_; ++x) { dropped += take(x, y, eye, integrator, options, common[y]); }
             const double share = static_cast<double>(++rows) / static_cast<double>(height_);
             if (options.progress && !options.progress(share)) { stop = true; }
         });
+        double all = 0;
+        for (const double row : common) { all += row; }
+        (options.fresh ? common2_ : common_) += options.fresh ? square(all) : all;
+        fresh_ = options.fresh && (fresh_ || samples_ == 0);
         samples_ += options.samples;
         dropped_ += dropped;
     }
@@ -82,12 +114,19 @@ private:
         double guess{0};
         double level{0};
         double level2{0};
+        double bias{0};
         std::uint32_t count{0};
+
+        /// Of the mean of more than one sample.
+        [[nodiscard]] double variance() const {
+            const double n = count;
+            return std::max(0.0, level2 / n - square(level / n)) / (n - 1);
+        }
     };
 
     template <typename Eye, typename Integrator>
     std::uint64_t take(std::size_t x, std::size_t y, const Eye& eye, const Integrator& integrator,
-                       const film_options& options) {
+                       const film_options& options, double& common) {
         using T = typename Integrator::scalar;
         pixel& p = pixels_[y * width_ + x];
         const std::uint32_t before = p.count;
@@ -96,7 +135,9 @@ private:
             const vec2<T> u = numbers.at(0, purpose::camera).next_2d();
             const estimate<S> seen =
                 integrator(eye(vec2<T>{static_cast<T>(x) + u.x, static_cast<T>(y) + u.y}), numbers);
-            if (is_radiance(seen.value)) { add(p, seen); }
+            if (!is_radiance(seen.value)) { continue; }
+            add(p, seen);
+            common += is_finite(seen.common) ? static_cast<double>(seen.common) : 0.0;
         }
         return options.samples - (p.count - before);
     }
@@ -107,6 +148,7 @@ private:
         p.guess += is_finite(seen.error) ? static_cast<double>(seen.error) : 0.0;
         p.level += level;
         p.level2 += level * level;
+        p.bias += is_finite(seen.bias) ? static_cast<double>(seen.bias) : 0.0;
         ++p.count;
     }
 
@@ -115,6 +157,9 @@ private:
     std::vector<pixel> pixels_;
     std::uint32_t samples_{0};
     std::uint64_t dropped_{0};
+    double common_{0};   ///< sum of what samples have in common with all others
+    double common2_{0};  ///< sum of squares of the same of fresh exposures
+    bool fresh_{false};  ///< whether every exposure was
 };
 
 }  // namespace aglow

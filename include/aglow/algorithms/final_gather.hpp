@@ -38,7 +38,7 @@ public:
         const std::uint64_t seed = seed_from(numbers.at(bounce, purpose::gather));
         S sum{};
         double sum2{0};  // squares of faint light leave the range of floats
-        B guess{0};
+        shared_error shared;
         for (std::uint32_t i = 0; i < options_.rays; ++i) {
             sobol_sampler<T> random{seed, i};
             const auto next = hit.sample(wo, random, lobe_set::diffuse & static_lobes<Source>);
@@ -49,14 +49,19 @@ public:
             if (!is_radiance(radiance)) { continue; }
             sum = sum + radiance;
             sum2 += square(static_cast<double>(max_component(radiance)));
-            guess += max_component(next->weight) * light.error;
+            const double weight = static_cast<double>(max_component(next->weight));
+            shared.common += weight * static_cast<double>(light.common);
+            shared.bias += weight * static_cast<double>(light.bias);
         }
         const B share = 1 / static_cast<B>(options_.rays);
         const double n = static_cast<double>(options_.rays);
         const double mean = static_cast<double>(max_component(sum)) / n;
         const double variance = std::max(0.0, sum2 / n - mean * mean) / n;
-        // Many rays average the map's errors out; what they have in common stays.
-        return {sum * share, static_cast<B>(std::sqrt(variance)) + guess * share};
+        // Many rays average the map's own noise out, as their spread tells; what they have in common stays.
+        const double common = shared.common / n;
+        const double bias = shared.bias / n;
+        const double guess = std::abs(bias) + 2 * std::sqrt(variance + square(common));
+        return {sum * share, static_cast<B>(guess), static_cast<B>(common), static_cast<B>(bias)};
     }
 
 private:

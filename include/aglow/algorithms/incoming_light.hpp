@@ -15,6 +15,8 @@ struct incoming_light {
     S radiance{};
     T distance{std::numeric_limits<T>::infinity()};
     band_of<S> error{};
+    band_of<S> common{};  ///< as of `estimate`
+    band_of<S> bias{};
 };
 
 }  // namespace aglow

@@ -33,7 +33,7 @@ public:
         };
         detail::path_walk<World, Lights, N> walk{scene_, lights_, numbers, emission_rule::all, options_, eye};
         const auto light = walk.run(shade);
-        return {light.radiance, light.error};
+        return {light.radiance, light.error, light.common, light.bias};
     }
 
     [[nodiscard]] const Layers& layers() const { return layers_; }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <aglow/algorithms/direct_light.hpp>
+#include <aglow/algorithms/photon_options.hpp>
 #include <aglow/estimators/estimate.hpp>
 #include <aglow/estimators/photon_map.hpp>
 
@@ -30,7 +31,8 @@ template <lobe_set Possible = lobe_set::all, Surface H, typename Irradiance>
     const auto add = [&](const vec3<hit_scalar<H>>& side, lobe_set lobe) {
         const estimate<S> e = irradiance(side);
         const S f = hit.evaluate(wo, side, lobe);
-        result = result + estimate<S>{f * e.value, max_component(f) * e.error};
+        const band_of<S> most = max_component(f);
+        result = result + estimate<S>{f * e.value, most * e.error, most * e.common, most * e.bias};
     };
     const vec3<hit_scalar<H>> near = side_of(hit, wo);
     if (any(hit.lobes(), lobe_set::diffuse_reflection)) { add(near, lobe_set::diffuse_reflection); }
@@ -46,18 +48,25 @@ class map_layer {
 public:
     explicit map_layer(const photon_map<S, T>& map, const density_options& options = {})
         : map_{map}, options_{options} {}
+    /// A map that knows how sure its flux is.
+    explicit map_layer(const traced_map<S, T>& map, const density_options& options = {})
+        : map_{map}, options_{options}, shared_{.common = map.common} {}
 
     template <Surface H, typename N>
     [[nodiscard]] estimate<S> operator()(const H& hit, const vec3<T>& wo, T, const N&, std::uint32_t) const {
         if (map_.empty()) { return {}; }
         return diffuse_radiance(hit, wo, [&](const vec3<T>& side) -> estimate<S> {
-            return map_.irradiance(vec3<T>(hit.position), side, options_);
+            const auto e = map_.irradiance(vec3<T>(hit.position), side, options_);
+            estimate<S> result = shared_.on(e.value, e.error);
+            result.bias = e.bias;
+            return result;
         });
     }
 
 private:
     const photon_map<S, T>& map_;
     density_options options_;
+    shared_error shared_{};
 };
 
 /// Layer: light straight from the lights by one shadow ray, on the lobes `lit`. Glossy lobes share it with the rays

@@ -184,8 +184,11 @@ public:
     }
     void add(const estimate<S>& light) {
         add(light.value);
-        const B error = max_component(at_.throughput) * light.error;
-        if (is_finite(error)) { result_.error += error; }
+        const B carried = max_component(at_.throughput);
+        const auto take = [&](B& sum, B part) { sum += is_finite(carried * part) ? carried * part : B(0); };
+        take(result_.error, light.error);
+        take(result_.common, light.common);
+        take(result_.bias, light.bias);
     }
 
     /// The largest band of what the walk carries.

@@ -53,6 +53,7 @@ struct traced_map : photon_map<S, T> {
     std::size_t wanted{0};
     std::size_t paths{0};  ///< emitted paths that could have stored here: what its power was divided by
     std::string why{};     ///< one clause for people, such as "left out, no specular surface"
+    double common{0};      ///< standard error of the whole map's flux over the flux: what no estimate can average away
 };
 
 /// What `trace_photons` gives back.

@@ -55,7 +55,7 @@ private:
             const vec3<T> lifted = side * error;
             usable =
                 usable && !(found->cut && scene_.occluded(vec3<T>(hit.position) + lifted, found->position + lifted));
-            return {without_caustic ? found->without_caustic : found->value, found->error};
+            return {without_caustic ? found->without_caustic : found->value, found->error, found->common, found->bias};
         };
         const estimate<S> radiance = diffuse_radiance<static_lobes<World>>(hit, wo, irradiance);
         if (!usable) { return std::nullopt; }

@@ -19,7 +19,7 @@ namespace aglow {
 
 /// How irradiance is worked out ahead.
 struct irradiance_options {
-    std::size_t every{4};          ///< a point at every so many photons
+    std::size_t every{4};          ///< a point at one in so many photons
     std::uint32_t shadow_rays{8};  ///< looks at the lights per point; 0 takes direct light from the direct map
     density_options density{};     ///< for the caustic and the indirect map
     std::uint64_t seed{0};
@@ -75,33 +75,81 @@ template <Intersector World>
     return false;
 }
 
+/// Whether photon `i` gives its place to a point: by chance, since photons of near indices lie near each other.
+[[nodiscard]] inline bool is_place(std::size_t i, const irradiance_options& options) {
+    return mix(options.seed, i) % options.every == 0;
+}
+
+/// Whether photons that give their places are left out of the irradiance there. They would make it too bright, or,
+/// each left out at its own place alone, too dark: a point stands for more of the surface where photons happen to lie
+/// farther apart. Places that the photons counted know nothing of make neither.
+[[nodiscard]] inline bool places_apart(const irradiance_options& options) { return options.every >= 3; }
+
 /// Irradiance from photons that can be seen from the point: behind a thin wall in the middle of their disc lie photons
 /// of the same plane, side and normal, which no test of these can tell apart.
 template <Intersector World, Spectrum S>
 [[nodiscard]] density_estimate<S, scalar_of<World>> seen_irradiance(
     const World& scene, const photon_map<S, scalar_of<World>>& map, const vec3<scalar_of<World>>& point,
-    const vec3<scalar_of<World>>& normal, scalar_of<World> error, const density_options& options) {
+    const vec3<scalar_of<World>>& normal, scalar_of<World> error, const irradiance_options& options) {
     using T = scalar_of<World>;
-    const auto plain = map.irradiance(point, normal, options);
+    const auto counts = [&](std::size_t i) { return !places_apart(options) || !is_place(i, options); };
+    auto seen = map.irradiance(point, normal, options.density, counts);
     const vec3<T> from = point + normal * error;
-    if (plain.count == 0 || !is_cut(scene, from, frame<T>{normal}, plain.radius)) { return plain; }
-    return map.irradiance(point, normal, options,
-                          [&](const vec3<T>& photon) { return !scene.occluded(from, photon + normal * error); });
+    if (seen.count > 0 && is_cut(scene, from, frame<T>{normal}, seen.radius)) {
+        seen = map.irradiance(point, normal, options.density, [&](std::size_t i) {
+            return counts(i) && !scene.occluded(from, map.position(i) + normal * error);
+        });
+    }
+    if (!places_apart(options)) { return seen; }
+    return seen.times(static_cast<band_of<S>>(options.every) / static_cast<band_of<S>>(options.every - 1));
+}
+
+/// What one point adds to what all points are off by together. Photons lie densely where it is bright, so a point
+/// stands for as much area as its disc has.
+struct shared_part {
+    double all{0};
+    double indirect{0};
+    double caustic{0};
+    double bias{0};
+};
+
+template <Spectrum S, std::floating_point T>
+[[nodiscard]] shared_part shared_part_of(const S& direct, const density_estimate<S, T>& indirect,
+                                         const density_estimate<S, T>& caustic) {
+    const double area = indirect.count > 0 ? square(static_cast<double>(indirect.radius)) : 0.0;
+    const auto level = [&](const S& s) { return area * static_cast<double>(max_component(s)); };
+    return {level(direct) + level(indirect.value) + level(caustic.value), level(indirect.value), level(caustic.value),
+            area * static_cast<double>(indirect.bias + caustic.bias)};
+}
+
+/// All parts together, relative to all light.
+[[nodiscard]] inline shared_error shared_by(std::span<const shared_part> parts, double indirect, double caustic) {
+    shared_part sum;
+    for (const shared_part& p : parts) {
+        sum.all += p.all;
+        sum.indirect += p.indirect;
+        sum.caustic += p.caustic;
+        sum.bias += p.bias;
+    }
+    if (!(sum.all > 0)) { return {}; }
+    return {(sum.indirect * indirect + sum.caustic * caustic) / sum.all, sum.bias / sum.all};
 }
 
 }  // namespace detail
 
-/// Irradiance from all light at every `options.every`-th photon of each map, the photons' side. Points keep the radius
-/// of their indirect estimate. The same for any executor. O(points (k + shadow rays)).
+/// Irradiance from all light at one in `options.every` photons of each map, on the photons' side. Points keep the
+/// radius of their indirect estimate. The same for any executor. O(points (k + shadow rays)).
 template <Scene World, Illuminator Lights, Executor Run = in_sequence>
 [[nodiscard]] auto precompute_irradiance(const World& scene, const Lights& lights,
                                          const photon_maps<spectrum_of<World>, scalar_of<World>>& maps,
-                                         const irradiance_options& options = {}, const Run& run = {}) {
+                                         irradiance_options options = {}, const Run& run = {}) {
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
+    options.every = std::max<std::size_t>(1, options.every);
     std::vector<irradiance_point<S, T>> points;
     const auto choose = [&](const photon_map<S, T>& map) {
-        for (std::size_t i = 0; i < map.size(); i += std::max<std::size_t>(1, options.every)) {
+        for (std::size_t i = 0; i < map.size(); ++i) {
+            if (!detail::is_place(i, options)) { continue; }
             points.push_back({.position = map.position(i),
                               .normal = glm::normalize(map.photons()[i].normal.template direction<T>())});
         }
@@ -115,11 +163,12 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
                         all.add(maps.indirect.box());
                         return all.empty() ? T(0) : std::max(max_abs(all.low), max_abs(all.high));
                     }());
+    std::vector<detail::shared_part> parts(points.size());
     for_each_block(run, points.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             irradiance_point<S, T>& p = points[i];
             const auto seen = [&](const photon_map<S, T>& map) {
-                return detail::seen_irradiance<World, S>(scene, map, p.position, p.normal, error, options.density);
+                return detail::seen_irradiance<World, S>(scene, map, p.position, p.normal, error, options);
             };
             const auto indirect = seen(maps.indirect);
             const auto caustic = seen(maps.caustic);
@@ -130,11 +179,17 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
             p.caustic = caustic.value;
             p.error = caustic.error + indirect.error;
             p.radius = indirect.count > 0 ? indirect.radius : T(0);
+            parts[i] = detail::shared_part_of<S, T>(direct, indirect, caustic);
             p.cut = detail::is_cut(scene, p.position + p.normal * error, frame<T>{p.normal},
                                    std::max(p.radius, caustic.radius));
         }
     });
-    return irradiance_points<S, T>{points, run};
+    shared_error shared = detail::shared_by(parts, maps.indirect.common, maps.caustic.common);
+    // A gather averages over many points, so what they lose in the mean can be given back to each. How well that is
+    // known, by half, stays.
+    for (irradiance_point<S, T>& p : points) { p = p.times(static_cast<band_of<S>>(1 - shared.bias)); }
+    shared.bias /= 2;
+    return irradiance_points<S, T>{points, run, shared};
 }
 
 }  // namespace aglow

@@ -62,12 +62,10 @@ public:
         ++passes_;
         density_options density = options_.density;
         density.shrink *= std::sqrt(radius2_share(static_cast<double>(passes_), options_.alpha));
-        const layered_integrator integrator{
-            scene_, lights_,
-            layer_sum{direct_layer{scene_, lights_},
-                      map_layer{static_cast<const photon_map<S, scalar_of<World>>&>(maps.caustic), density},
-                      map_layer{static_cast<const photon_map<S, scalar_of<World>>&>(maps.indirect), density}}};
-        onto.expose(eye, integrator, {.samples = 1, .seed = options_.seed}, run);
+        const layered_integrator integrator{scene_, lights_,
+                                            layer_sum{direct_layer{scene_, lights_}, map_layer{maps.caustic, density},
+                                                      map_layer{maps.indirect, density}}};
+        onto.expose(eye, integrator, {.samples = 1, .seed = options_.seed, .fresh = true}, run);
     }
 
     [[nodiscard]] std::uint64_t passes() const { return passes_; }

@@ -28,6 +28,8 @@ struct photon_block {
     std::array<std::vector<landed_photon<S, T>>, 4> landed{};
     std::array<std::size_t, 4> counts{};
     std::array<std::size_t, 4> paths{};  ///< walked here that could have stored photons of each history
+    std::array<double, 4> flux{};        ///< stored power; its squares path by path tell how sure the whole is
+    std::array<double, 4> flux2{};       ///< (photons of one path are no independent witnesses)
     energy_ledger<S> ledger{};
 };
 
@@ -158,6 +160,7 @@ private:
 
     void trace_path(const halton_numbers<T>& numbers, std::size_t i, const kinds& paths, photon_block<S, T>& into) {
         for (std::size_t kind = 0; kind < 4; ++kind) { into.paths[kind] += i < paths[kind] ? 1 : 0; }
+        const std::array<double, 4> before = into.flux;
         walk_photon(scene_, lights_, numbers, most_bounces_, into.ledger,
                     [&](const auto& hit, const vec3<T>& wi, const S& power, photon_history history) {
                         const std::size_t kind = map_of(history);
@@ -167,6 +170,7 @@ private:
                         }
                         return is_wanted_after(history, any(hit.lobes(), lobe_set::specular), i, paths);
                     });
+        for (std::size_t kind = 0; kind < 4; ++kind) { into.flux2[kind] += square(into.flux[kind] - before[kind]); }
     }
 
     /// Whether some map may still store what goes on from a surface that path `i` came to with `history`.
@@ -182,6 +186,7 @@ private:
     void store(const H& hit, const vec3<T>& wi, const S& power, photon_block<S, T>& into, std::size_t kind) {
         ++into.counts[kind];
         if (piloting_) { return; }
+        if (is_radiance(power)) { into.flux[kind] += static_cast<double>(max_component(power)); }
         const vec3<T> n = hit.normal;
         const vec3<T> side = glm::dot(n, wi) < 0 ? -n : n;
         into.landed[kind].push_back(
@@ -191,9 +196,13 @@ private:
     void finish(traced_map<S, T>& map, const blocks_type& blocks, photon_history kind) {
         const std::size_t k = index(kind);
         std::size_t count = 0;
+        double flux = 0;
+        double flux2 = 0;
         for (const auto& block : blocks) {
             count += block.landed[k].size();
             map.paths += block.paths[k];
+            flux += block.flux[k];
+            flux2 += block.flux2[k];
         }
         std::vector<landed_photon<S, T>> photons;
         photons.reserve(count);
@@ -202,6 +211,9 @@ private:
         }
         const T scale = map.paths == 0 ? T(0) : T(1) / static_cast<T>(map.paths);
         static_cast<photon_map<S, T>&>(map) = photon_map<S, T>{photons, scale, run_};
+        if (flux > 0) {
+            map.common = std::sqrt(std::max(0.0, flux2 - flux * flux / static_cast<double>(map.paths))) / flux;
+        }
         map.wanted = wanted_[k];
         map.why = why_[k];
         describe(map);

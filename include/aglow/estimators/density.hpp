@@ -26,6 +26,12 @@ template <Spectrum S, std::floating_point T>
 struct density_estimate : estimate<S> {
     std::uint32_t count{0};  ///< photons used
     T radius{0};             ///< radius that they were spread over
+
+    /// From the same photons, each with so many times the power.
+    [[nodiscard]] density_estimate times(band_of<S> factor) const {
+        const estimate<S>& e = *this;
+        return {{e.value * factor, e.error * factor, e.common * factor, e.bias * factor}, count, radius};
+    }
 };
 
 }  // namespace aglow

@@ -29,6 +29,7 @@
 #include <aglow/estimators/record_blend.hpp>
 #include <aglow/estimators/record_neighbours.hpp>
 #include <aglow/estimators/record_reach.hpp>
+#include <aglow/estimators/record_sharing.hpp>
 
 namespace aglow {
 
@@ -265,6 +266,13 @@ public:
             items[i] = {smooth ? detail::smoothed(tree_, one.record, all, limits_) : one.record, bends[i]};
         });
         return frozen{std::move(items), options_};
+    }
+
+    /// What lookups at `places`, a picture's, are off by together, as far as the records know: their noise, and the
+    /// bias of speaking for each other. Each place has a `position` and a unit `normal`.
+    template <typename Places>
+    [[nodiscard]] shared_error shared(const Places& places) const {
+        return detail::shared_by_records(tree_, places, limits_);
     }
 
 private:

@@ -27,6 +27,14 @@ struct irradiance_point {
     band_of<S> error{};  ///< guess of its error
     T radius{};          ///< what the estimate was spread over: nearer than that, it knows no detail
     bool cut{};          ///< whether something cuts through that disc, so that it may lie hidden from a near place
+
+    /// The same place with so many times the light.
+    [[nodiscard]] irradiance_point times(band_of<S> factor) const {
+        irradiance_point result = *this;
+        result.irradiance = irradiance * factor;
+        result.caustic = caustic * factor;
+        return result;
+    }
 };
 
 /// Many irradiance points; the nearest one that fits a surface speaks for it. `const` look-ups from many threads.
@@ -45,7 +53,9 @@ public:
 
     /// Points with broken irradiance are left out.
     template <Executor Run = in_sequence>
-    explicit irradiance_points(std::span<const irradiance_point<S, T>> points, const Run& run = {}) {
+    explicit irradiance_points(std::span<const irradiance_point<S, T>> points, const Run& run = {},
+                               const shared_error& shared = {})
+        : shared_{shared} {
         std::vector<std::uint32_t> sound;
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (is_radiance(points[i].irradiance) && is_radiance(points[i].caustic)) {
@@ -65,6 +75,8 @@ public:
 
     [[nodiscard]] std::size_t size() const { return stored_.size(); }
     [[nodiscard]] bool empty() const { return stored_.empty(); }
+    /// What all points are off by together, relative to their irradiance.
+    [[nodiscard]] const shared_error& shared() const { return shared_; }
     /// Bytes in all.
     [[nodiscard]] std::size_t memory() const { return tree_.memory() + stored_.capacity() * sizeof(stored); }
 
@@ -83,8 +95,13 @@ public:
         const auto found = tree_.nearest(point, 1, scratch, {.radius2 = square(reach_)}, fits);
         if (found.empty()) { return std::nullopt; }
         const stored& s = stored_[found.slots[0]];
-        return reading{
-            {s.irradiance + s.caustic, s.error}, s.radius, s.irradiance, tree_.position(found.slots[0]), s.cut};
+        const S all = s.irradiance + s.caustic;
+        const band_of<S> level = max_component(all);
+        return reading{{all, s.error, level * band_of<S>(shared_.common), level * band_of<S>(shared_.bias)},
+                       s.radius,
+                       s.irradiance,
+                       tree_.position(found.slots[0]),
+                       s.cut};
     }
 
 private:
@@ -109,6 +126,7 @@ private:
 
     kd_tree<T> tree_{};
     std::vector<stored> stored_{};
+    shared_error shared_{};
     T reach_{0};
     T slack_{0};  ///< how far positions may lie off their surface
 };

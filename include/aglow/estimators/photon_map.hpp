@@ -73,15 +73,15 @@ public:
     /// told.
     [[nodiscard]] density_estimate<S, T> irradiance(const vec3<T>& point, const vec3<T>& normal,
                                                     const density_options& options = {}) const {
-        return irradiance(point, normal, options, [](const vec3<T>&) { return true; });
+        return irradiance(point, normal, options, [](std::size_t) { return true; });
     }
 
-    /// The same from photons whose position `counts` alone: what the caller knows to be hidden does not count.
-    template <std::predicate<const vec3<T>&> Counts>
+    /// The same from photons whose index `counts` alone: what the caller knows to be hidden does not count.
+    template <std::predicate<std::size_t> Counts>
     [[nodiscard]] density_estimate<S, T> irradiance(const vec3<T>& point, const vec3<T>& normal,
                                                     const density_options& options, Counts&& counts) const {
         const auto weigh = [](const photon<S>& p) { return p.power; };
-        const auto accept = [&](kd_slot i) { return accepts(i, point, normal, options) && counts(tree_.position(i)); };
+        const auto accept = [&](kd_slot i) { return accepts(i, point, normal, options) && counts(i); };
         auto e = sum(point, options, accept, weigh);
         // Nobody came, and yet with 95 % confidence up to three were to be expected (the rule of three).
         if (e.count == 0 && e.radius > 0) {
@@ -234,9 +234,16 @@ private:
             const B scale = B(1 / radius2) * unit;
             // Bias goes as radius², so the wider estimate is off by 1 / (1 - 1/4) of what lies between both.
             const S apart = (wide_before + narrow_before * B(-1)) * (B(4) / 3);
-            const B bias = std::max(max_component(apart), max_component(S(apart * B(-1))));
+            const B above = max_component(apart);
+            const B below = max_component(S(apart * B(-1)));
             const B noise = B(std::sqrt(noise2));
-            return {{wide_before * scale, (bias + 2 * noise) * scale}, count, std::sqrt(radius2)};
+            // Across edges, where most of a picture's bias is, it goes as the radius: half of it lies between both.
+            const B shared = B(1.5) * (above < below ? -below : above);
+            return {{.value = wide_before * scale,
+                     .error = (std::max(above, below) + 2 * noise) * scale,
+                     .bias = shared * scale},
+                    count,
+                    std::sqrt(radius2)};
         }
     };
 
