@@ -62,12 +62,15 @@ sample_mean bundle(const Integrator& integrator, const vec3<float>& from, const 
 }  // namespace
 
 TEST_CASE("final_gather: even light is reflected by the albedo, without noise") {
-    const answers even{[](const ray<float>&) { return incoming_light<S, float>{S{2}, 1, 0.5f}; }};
+    const answers even{[](const ray<float>&) { return incoming_light<S, float>{S{2}, 1, 0.5f, 0.125f, -0.25f}; }};
     const auto e = gathered(gather_layer{even}, matte, 0);
     CHECK(e.value.x == Approx(1));
     CHECK(e.value.z == Approx(0.25));
-    // No spread of its own; what the map says of its error stays.
-    CHECK(e.error == Approx(0.5f * 0.5f).epsilon(1e-3));
+    // No spread of its own. What the map's errors have in common stays; what each ray's has for itself, its spread
+    // would tell.
+    CHECK(e.common == Approx(0.5f * 0.125f).epsilon(1e-3));
+    CHECK(e.bias == Approx(-0.5f * 0.25f).epsilon(1e-3));
+    CHECK(e.error == Approx(0.5f * (0.25f + 2 * 0.125f)).epsilon(1e-3));
 }
 
 TEST_CASE("final_gather: a sky with a cosine gives two thirds, and the guess covers what is off") {

@@ -87,12 +87,13 @@ namespace detail {
 
 /// What a picture from `cache` is off by everywhere, told from a thousand of the places that it was made for.
 template <typename Cache, std::floating_point T>
-[[nodiscard]] shared_error shared_at(const Cache& cache, const std::vector<cache_candidate<T>>& places) {
+[[nodiscard]] shared_error shared_at(const Cache& cache, const typename Cache::frozen& finished,
+                                     const std::vector<cache_candidate<T>>& places) {
     constexpr std::size_t enough = 1024;
     std::vector<gather_point<T>> some;
     const std::size_t step = 1 + places.size() / enough;
     for (std::size_t i = step / 2; i < places.size(); i += step) { some.push_back(places[i].place); }
-    return cache.shared(some);
+    return cache.shared(finished, some);
 }
 
 }  // namespace detail
@@ -122,8 +123,8 @@ public:
         irradiance_cache<spectrum, scalar> cache{scene_bounds, options.cache};
         const auto places = cache_candidates(scene, eye, options.view, run);
         filled_ = fill_cache(cache, places, path_reader<World, Lights>{source_}, options.fill, run);
-        shared_ = detail::shared_at(cache, places);
         cache_ = cache.freeze(run);
+        shared_ = detail::shared_at(cache, cache_, places);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
@@ -182,8 +183,8 @@ public:
         irradiance_cache<spectrum, scalar> cache{scene_bounds, options.caching.cache};
         const auto places = cache_candidates(scene, eye, options.caching.view, run);
         filled_ = fill_cache(cache, places, reader(), options.caching.fill, run);
-        shared_ = base_.points().shared() + detail::shared_at(cache, places);
         cache_ = cache.freeze(run);
+        shared_ = base_.points().shared() + detail::shared_at(cache, cache_, places);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.

@@ -268,11 +268,12 @@ public:
         return frozen{std::move(items), options_};
     }
 
-    /// What lookups at `places`, a picture's, are off by together, as far as the records know: their noise, and the
-    /// bias of speaking for each other. Each place has a `position` and a unit `normal`.
+    /// What lookups of `finished`, this cache frozen, are off by together at `places`, a picture's, as far as the
+    /// records know: their noise, and the bias of speaking for each other and of being smoothed. Each place has a
+    /// `position` and a unit `normal`.
     template <typename Places>
-    [[nodiscard]] shared_error shared(const Places& places) const {
-        return detail::shared_by_records(tree_, places, limits_);
+    [[nodiscard]] shared_error shared(const frozen& finished, const Places& places) const {
+        return detail::shared_by_records(tree_, finished, places, limits_);
     }
 
 private:

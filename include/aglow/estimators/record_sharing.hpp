@@ -45,10 +45,12 @@ struct weighed_records {
 };
 
 /// What lookups at `places` (anything with `.position` and `.normal`) are off by together: each record's noise by its
-/// share in all of them, and by what a record's neighbours would miss it, were it not there. `tree[i].record` are the
-/// records as they were gathered.
-template <typename Tree, std::floating_point T, typename Places>
-[[nodiscard]] shared_error shared_by_records(const Tree& tree, const Places& places, const lookup_limits<T>& limits) {
+/// share in all of them, by what a record's neighbours would miss it, were it not there, and by what smoothing took
+/// from it. `tree[i].record` are the records as they were gathered, `smooth[i]` the same as they are read.
+template <typename Tree, typename Smooth, std::floating_point T, typename Places>
+[[nodiscard]] shared_error shared_by_records(const Tree& tree, const Smooth& smooth, const Places& places,
+                                             const lookup_limits<T>& limits) {
+    const auto level = [](const auto& record) { return static_cast<double>(max_component(record.irradiance())); };
     std::vector<double> share(tree.size());
     double all = 0;
     for (const auto& place : places) {
@@ -59,14 +61,13 @@ template <typename Tree, std::floating_point T, typename Places>
     if (!(all > 0)) { return {}; }
     double variance = 0;
     double bias = 0;
-    for (std::size_t i = 0; i < share.size(); ++i) {
+    for (std::uint32_t i = 0; i < tree.size(); ++i) {
         if (!(share[i] > 0)) { continue; }
-        const auto& record = tree[static_cast<std::uint32_t>(i)].record;
+        const auto& record = tree[i].record;
         variance += square(share[i]) * variance_of(record);
+        bias += share[i] * (level(smooth[i]) - level(record));
         const weighed_records<T> others{tree, record.position(), record.normal(), limits, i};
-        if (others.weight > limits.weight) {
-            bias += share[i] * (others.mean() - static_cast<double>(max_component(record.irradiance())));
-        }
+        if (others.weight > limits.weight) { bias += share[i] * (others.mean() - level(record)); }
     }
     return {std::sqrt(variance) / all, bias / all};
 }
