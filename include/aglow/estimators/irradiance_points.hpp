@@ -13,6 +13,7 @@
 #include <aglow/containers/kd_tree.hpp>
 #include <aglow/core/packed_direction.hpp>
 #include <aglow/core/ray.hpp>
+#include <aglow/core/simd.hpp>
 #include <aglow/estimators/estimate.hpp>
 
 namespace aglow {
@@ -64,10 +65,11 @@ public:
         }
         tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return points[i].position; }, run};
         stored_.reserve(tree_.size());
+        sides_.reserve(tree_.size());
         for (const std::uint32_t i : tree_.order()) {
             const irradiance_point<S, T>& p = points[sound[i]];
-            stored_.push_back(
-                {p.irradiance, p.caustic, p.error, p.radius, packed_direction<std::int8_t>{p.normal}, p.cut});
+            stored_.push_back({p.irradiance, p.caustic, p.error, p.radius});
+            sides_.push_back({packed_direction<std::int8_t>{p.normal}, p.cut});
         }
         tree_.forget_order();
         measure();
@@ -78,30 +80,32 @@ public:
     /// What all points are off by together, relative to their irradiance.
     [[nodiscard]] const shared_error& shared() const { return shared_; }
     /// Bytes in all.
-    [[nodiscard]] std::size_t memory() const { return tree_.memory() + stored_.capacity() * sizeof(stored); }
+    [[nodiscard]] std::size_t memory() const {
+        return tree_.memory() + stored_.capacity() * sizeof(stored) + sides_.capacity() * sizeof(side);
+    }
 
     /// The irradiance of the nearest point whose normal is within 37 degrees of unit `normal` and that lies within 14
     /// degrees of the tangent plane, so that a wall close behind does not answer; empty where none is within reach.
     /// O(log n).
     [[nodiscard]] std::optional<reading> nearest(const vec3<T>& point, const vec3<T>& normal) const {
-        // Scratch only: what it holds never shows in a result.
-        static thread_local kd_scratch<T> scratch;
         const auto fits = [&](kd_slot i) {
-            if (!(glm::dot(stored_[i].normal.template direction<T>(), normal) > T(0.8))) { return false; }
+            if (!(glm::dot(sides_[i].normal.template direction<T>(), normal) > T(0.8))) { return false; }
             const vec3<T> away = tree_.position(i) - point;
             const T height = std::abs(glm::dot(away, normal)) - slack_;
-            return height <= 0 || square(4 * height) <= length2(away);
+            if (!(height <= 0 || square(4 * height) <= length2(away))) { return false; }
+            simd::prefetch(&stored_[i]);
+            return true;
         };
-        const auto found = tree_.nearest(point, 1, scratch, {.radius2 = square(reach_)}, fits);
-        if (found.empty()) { return std::nullopt; }
-        const stored& s = stored_[found.slots[0]];
+        const auto found = tree_.nearest_one(point, square(reach_), fits);
+        if (!found) { return std::nullopt; }
+        const stored& s = stored_[found->slot];
         const S all = s.irradiance + s.caustic;
         const band_of<S> level = max_component(all);
         return reading{{all, s.error, level * band_of<S>(shared_.common), level * band_of<S>(shared_.bias)},
                        s.radius,
                        s.irradiance,
-                       tree_.position(found.slots[0]),
-                       s.cut};
+                       tree_.position(found->slot),
+                       sides_[found->slot].cut};
     }
 
 private:
@@ -110,6 +114,9 @@ private:
         S caustic;
         band_of<S> error;
         T radius;
+    };
+    /// What a search looks at: by itself, so that it looks at few bytes.
+    struct side {
         packed_direction<std::int8_t> normal;
         bool cut;
     };
@@ -126,6 +133,7 @@ private:
 
     kd_tree<T> tree_{};
     std::vector<stored> stored_{};
+    std::vector<side> sides_{};
     shared_error shared_{};
     T reach_{0};
     T slack_{0};  ///< how far positions may lie off their surface
