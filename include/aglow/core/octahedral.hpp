@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <aglow/core/numbers.hpp>
 #include <aglow/core/vec.hpp>
 
 namespace aglow {
@@ -32,11 +33,24 @@ public:
 
     template <typename T>
     [[nodiscard]] vec3<T> direction() const {
-        const T x = static_cast<T>(x_) / T(32767);
-        const T y = static_cast<T>(y_) / T(32767);
-        const T z = 1 - std::abs(x) - std::abs(y);
-        const T fold = std::max(T(0), -z);
-        return glm::normalize(vec3<T>{x - sign(x) * fold, y - sign(y) * fold, z});
+        return unfolded(folded<T>());
+    }
+
+    /// The place on the unfolded octahedron, in [-1, 1].
+    template <typename T>
+    [[nodiscard]] vec2<T> folded() const {
+        // Rounds so that 32767 steps are one.
+        return {static_cast<T>(x_) * (T(1) / T(32767)), static_cast<T>(y_) * (T(1) / T(32767))};
+    }
+    /// The direction of such a place.
+    template <typename T>
+    [[nodiscard]] static vec3<T> unfolded(const vec2<T>& at) {
+        const T z = 1 - std::abs(at.x) - std::abs(at.y);
+        const T fold = z < 0 ? -z : T(0);
+        const T x = at.x - sign(at.x) * fold;
+        const T y = at.y - sign(at.y) * fold;
+        const T scale = inverse_root(x * x + y * y + z * z);
+        return {x * scale, y * scale, z * scale};
     }
 
     friend bool operator==(const octahedral&, const octahedral&) = default;
