@@ -1,5 +1,4 @@
-// The octree of spheres of influence: how long an insertion takes, and a lookup, growing, settled and frozen.
-#include <aglow/containers/frozen_discs.hpp>
+// The octree of spheres of influence: how long an insertion takes, and a lookup, growing and settled.
 #include <aglow/containers/octree.hpp>
 
 #include "micro/question.hpp"
@@ -37,15 +36,6 @@ const octree& settled_tree(std::int64_t n) {
         return tree;
     });
 }
-const aglow::frozen_discs<float>& frozen(std::int64_t n) {
-    return micro::kept(n, [n](std::size_t count) {
-        const float radius = micro::wall_radius(covering, count);
-        std::vector<aglow::thick_disc<float>> discs;
-        for (const wall_place& p : places(n)) { discs.push_back({p.position, radius, p.normal, 0.1f * radius}); }
-        return aglow::frozen_discs<float>{discs};
-    });
-}
-
 /// All items into an empty tree.
 void insert(benchmark::State& state, bool sorted) {
     const auto& from = sorted ? sorted_places(state.range(0)) : places(state.range(0));
@@ -86,12 +76,6 @@ void look_up_in_octree(benchmark::State& state, bool settled, bool coherent) {
     });
 }
 
-void look_up_in_frozen(benchmark::State& state, bool coherent) {
-    const auto& discs = frozen(state.range(0));
-    look_up(state, coherent, [&](const point& p) { return discs.candidates(p).size(); });
-    micro::count_bytes(state, discs.bytes(), static_cast<std::size_t>(state.range(0)));
-}
-
 const bool asked = [] {
     const auto over_sizes = [](benchmark::internal::Benchmark* question) { return micro::sizes(question, largest); };
     const std::string how_long = "octree/how_long_does_";
@@ -107,11 +91,9 @@ const bool asked = [] {
             ->Complexity(benchmark::oLogN);
         over_sizes(ask(how_long + "one_lookup_take/settled" + order, look_up_in_octree, true, coherent))
             ->Complexity(benchmark::oLogN);
-        over_sizes(ask(how_long + "one_lookup_take/frozen" + order, look_up_in_frozen, coherent))
-            ->Complexity(benchmark::oLogN);
     }
     ask("octree/how_do_readers_scale/growing", look_up_in_octree, false, false)->Arg(10000)->ThreadRange(1, 2);
-    ask("octree/how_do_readers_scale/frozen", look_up_in_frozen, false)->Arg(10000)->ThreadRange(1, 2);
+    ask("octree/how_do_readers_scale/settled", look_up_in_octree, true, false)->Arg(10000)->ThreadRange(1, 2);
     return true;
 }();
 

@@ -34,7 +34,6 @@
 
 // containers: where things are
 #include <aglow/containers/cell_directory.hpp>
-#include <aglow/containers/frozen_discs.hpp>
 #include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_cloud.hpp>

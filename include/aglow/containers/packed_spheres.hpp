@@ -61,6 +61,15 @@ public:
         }
     }
 
+    /// Gives every sphere the number `next(its item)` instead, asked for in an order in which neighbours follow each
+    /// other: for an owner who lays out his items likewise.
+    template <typename Next>
+    void renumber(Next&& next) {
+        for (block& b : blocks_) {
+            for (unsigned i = 0; i < lanes && b.limit2[i] > 0; ++i) { b.item[i] = next(b.item[i]); }
+        }
+    }
+
     /// Bytes taken from the heap.
     [[nodiscard]] std::size_t bytes() const {
         return blocks_.capacity() * sizeof(block) + nodes_.capacity() * sizeof(node) +

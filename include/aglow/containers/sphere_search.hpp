@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -134,6 +135,9 @@ public:
         }
         count_ = kept;
     }
+
+    /// What was found, in the order of finding.
+    [[nodiscard]] std::span<const std::uint32_t> items() const { return {items_, count_}; }
 
     /// Calls `visitor(items[i])` for the found i, in ascending order; the visitor may return false to stop.
     template <typename Items, typename Visitor>

@@ -18,8 +18,9 @@
 #include <vector>
 
 #include <aglow/concepts/spectrum.hpp>
-#include <aglow/containers/frozen_discs.hpp>
 #include <aglow/containers/octree.hpp>
+#include <aglow/containers/packed_spheres.hpp>
+#include <aglow/containers/sphere_search.hpp>
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/parallel.hpp>
@@ -83,13 +84,6 @@ inline void check(const irradiance_cache_options& o) {
                    o.lookup.minimum_weight);
 }
 
-/// How far off its plane a record can speak, in reaches: the tolerance of the plane test, and what the mean of two
-/// normals that differ by the limit adds to it over the longest way.
-template <std::floating_point T>
-[[nodiscard]] T relative_height(const lookup_limits<T>& limits) {
-    return limits.plane + std::sqrt(limits.turn / 2);
-}
-
 }  // namespace detail
 
 /// A finished irradiance cache: only to be asked. Safe from many threads.
@@ -109,16 +103,21 @@ public:
     /// Holds nothing and answers nothing.
     frozen_irradiance_cache() : frozen_irradiance_cache{std::vector<item>{}, irradiance_cache_options{}} {}
 
-    /// The order of the items is the order of summing.
-    frozen_irradiance_cache(std::vector<item> items, const irradiance_cache_options& options)
-        : items_{std::move(items)}, options_{options}, limits_{options.lookup, options.reach.metric} {
-        std::vector<thick_disc<T>> discs;
-        discs.reserve(items_.size());
-        for (const item& i : items_) {
-            const T reach = i.record.longest_radius();
-            discs.push_back({i.record.position(), reach, i.record.normal(), detail::relative_height(limits_) * reach});
+    /// The items are laid out anew, near ones side by side. Expects usable records.
+    frozen_irradiance_cache(const std::vector<item>& items, const irradiance_cache_options& options)
+        : options_{options}, limits_{options.lookup, options.reach.metric} {
+        std::vector<stored_sphere<T>> spheres;
+        spheres.reserve(items.size());
+        for (const item& i : items) {
+            const auto number = static_cast<std::uint32_t>(spheres.size());
+            spheres.push_back({i.record.position(), limit2_of(i.record.longest_radius()), number});
         }
-        discs_ = frozen_discs<T>{discs};
+        reaches_ = packed_spheres<T>{std::move(spheres)};
+        items_.reserve(items.size());
+        reaches_.renumber([&](std::uint32_t i) {
+            items_.push_back(items[i]);
+            return size() - 1;
+        });
     }
 
     /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
@@ -130,22 +129,12 @@ public:
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
                                                  Counters& counters) const {
         record_blend<S, T> blend{point, normal, limits_};
-        std::span<const std::uint32_t> left = discs_.candidates(point);
-        while (!left.empty()) {
-            std::uint32_t near[chunk];
-            const std::span<const std::uint32_t> now = left.first(std::min(chunk, left.size()));
-            std::size_t count = 0;
-            // Without a branch: which of them reach is what a processor cannot guess.
-            for (const std::uint32_t i : now) {
-                near[count] = i;
-                count += items_[i].record.may_reach(distance2(point, items_[i].record.position()));
-            }
-            for (std::size_t k = 0; k < count; ++k) {
-                const item& one = items_[near[k]];
-                detail::count(counters, blend.add(one.record, one.bend));
-            }
-            left = left.subspan(now.size());
-        }
+        sphere_hits<T> near;
+        reaches_.search(covering_question<T>{point}, near);
+        const std::span<const std::uint32_t> numbers = near.items();
+        blend.add(
+            numbers.size(), [&](std::size_t i) -> const item& { return items_[numbers[i]]; },
+            [&](detail::verdict v) { detail::count(counters, v); });
         const irradiance_answer<S, T> answer = blend.answer();
         detail::count_lookup(counters, static_cast<bool>(answer));
         return answer;
@@ -175,15 +164,13 @@ public:
     [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
 
     /// Bytes taken from the heap.
-    [[nodiscard]] std::size_t bytes() const { return items_.capacity() * sizeof(item) + discs_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const { return items_.capacity() * sizeof(item) + reaches_.bytes(); }
 
 private:
-    static constexpr std::size_t chunk = 64;
-
     std::vector<item> items_;
     irradiance_cache_options options_;
     detail::lookup_limits<T> limits_;
-    frozen_discs<T> discs_;
+    packed_spheres<T> reaches_;
 };
 
 /// An irradiance cache that grows. Lookups are safe from many threads while nobody inserts.
@@ -216,7 +203,19 @@ public:
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
                                                  Counters& counters) const {
         record_blend<S, T> blend{point, normal, limits_};
-        tree_.visit_covering(point, [&](const item& i) { detail::count(counters, blend.add(i.record, i.bend)); });
+        const item* near[few];
+        std::size_t count = 0;
+        const auto add_near = [&] {
+            blend.add(
+                count, [&](std::size_t i) -> const item& { return *near[i]; },
+                [&](detail::verdict v) { detail::count(counters, v); });
+            count = 0;
+        };
+        tree_.visit_covering(point, [&](const item& i) {
+            near[count++] = &i;
+            if (count == few) { add_near(); }
+        });
+        add_near();
         const irradiance_answer<S, T> answer = blend.answer();
         detail::count_lookup(counters, static_cast<bool>(answer));
         return answer;
@@ -240,6 +239,11 @@ public:
             return refuse(record_status::bad_reach);
         }
         if (options_.clamp_neighbours) { clamp_others(e.position, own); }
+        // What has settled is found faster, and at half as many more at a time settling costs some three steps each.
+        if (size() >= settles_at_) {
+            tree_.settle([](const item& i) { return i.record.longest_radius(); });
+            settles_at_ = size() + size() / 2;
+        }
         return record_status::inserted;
     }
 
@@ -251,8 +255,11 @@ public:
     /// How many estimates were refused.
     [[nodiscard]] std::size_t refused() const { return refused_; }
 
-    /// The records in their present reach and in their order, ready to be asked only. Each learns from its neighbours
-    /// how far off its extrapolation is, and, with `smoothing`, what they take its irradiance to be.
+    /// Bytes taken from the heap.
+    [[nodiscard]] std::size_t bytes() const { return tree_.bytes(); }
+
+    /// The records in their present reach, ready to be asked only; near ones get near numbers. Each learns from its
+    /// neighbours how far off its extrapolation is, and, with `smoothing`, what they take its irradiance to be.
     template <Executor E = in_sequence>
     [[nodiscard]] frozen freeze(const E& run = {}) const {
         std::vector<T> bends(size());
@@ -265,7 +272,7 @@ public:
             const std::span<const T> all{bends};
             items[i] = {smooth ? detail::smoothed(tree_, one.record, all, limits_) : one.record, bends[i]};
         });
-        return frozen{std::move(items), options_};
+        return frozen{items, options_};
     }
 
     /// What lookups of `finished`, this cache frozen, are off by together at `places`, a picture's, as far as the
@@ -291,6 +298,8 @@ private:
             for (std::size_t i = first; i < last; ++i) { body(i, tree_[static_cast<std::uint32_t>(i)]); }
         });
     }
+
+    static constexpr std::size_t few = 32;
 
     record_status refuse(record_status why) {
         ++refused_;
@@ -332,6 +341,7 @@ private:
     T scene_radius_;
     detail::lookup_limits<T> limits_;
     octree<item, T> tree_;
+    std::uint32_t settles_at_{64};
     std::size_t refused_{0};
 };
 

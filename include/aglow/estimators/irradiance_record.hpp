@@ -71,8 +71,7 @@ public:
           rays_{static_cast<std::uint16_t>(std::min(rays, 65535u))} {}
     template <typename T>
     [[nodiscard]] T noise() const {
-        const T x = static_cast<T>(noise_) / T(65534);
-        return x / std::max(T(1) / T(65534), 1 - x);
+        return static_cast<T>(noise_) / static_cast<T>(std::max(1, 65534 - noise_));
     }
     [[nodiscard]] std::uint32_t rays() const { return rays_; }
 
@@ -82,6 +81,33 @@ private:
 };
 
 }  // namespace detail
+
+/// Where a record may speak: its place, axes and reach.
+template <std::floating_point T>
+struct record_shape {
+    vec3<T> position;
+    T radius;
+    vec2<T> normal;   ///< as `octahedral` folds it
+    vec2<T> ellipse;  ///< half of 1 - (shorter/longer)² times (cos, sin) of twice the shorter axis' angle
+
+    /// What gradients and ellipse are given in.
+    [[nodiscard]] frame<T> axes() const { return frame<T>{octahedral::unfolded(normal)}; }
+
+    /// Where a point of the world lies: in `axes`, from the position, in units of the radius.
+    [[nodiscard]] vec3<T> local(const vec3<T>& point, const frame<T>& axes) const {
+        return axes.to_local(point - position) * (1 / radius);
+    }
+
+    /// Squared distance of a `local` point in units of the reach: below 1 inside the ellipsoid whose third semi-axis is
+    /// the shorter one.
+    [[nodiscard]] T distance2(const vec3<T>& p) const {
+        const T e2 = ellipse.x * ellipse.x + ellipse.y * ellipse.y;
+        const T round = 1 - e2 * inverse_root(e2);
+        const T flat =
+            round * (p.x * p.x + p.y * p.y) + ellipse.x * (p.x * p.x - p.y * p.y) + ellipse.y * (2 * p.x * p.y);
+        return (flat > 0 ? flat : T(0)) + p.z * p.z;
+    }
+};
 
 /// Irradiance at a point and how it goes on around it. 64 bytes for RGB with all but `incident`, 32 for gray without
 /// gradients. Trivially copyable; scaling its scene by a power of two scales it exactly.
@@ -120,16 +146,6 @@ public:
     /// The shorter semi-axis of the reach.
     [[nodiscard]] T radius() const { return radius_; }
 
-    /// Whether a squared distance from the position is within the longer semi-axis: a quick first test.
-    [[nodiscard]] bool may_reach(T squared_distance) const {
-        if constexpr (Features.ellipse) {
-            const vec2<T> e = ellipse_.template value<T>();
-            return squared_distance * (1 - 2 * std::sqrt(e.x * e.x + e.y * e.y)) < radius_ * radius_;
-        } else {
-            return squared_distance < radius_ * radius_;
-        }
-    }
-
     /// The longer semi-axis, rounded upwards: beyond it the record has no weight.
     [[nodiscard]] T longest_radius() const {
         if constexpr (Features.ellipse) {
@@ -150,26 +166,15 @@ public:
     /// How many accepted rays it was made from; 65535 stands for that many or more.
     [[nodiscard]] std::uint32_t rays() const requires(Features.noise) { return noise_.rays(); }
 
-    /// The record's axes: what its gradients and its ellipse are given in.
-    [[nodiscard]] frame<T> axes() const { return frame<T>{normal()}; }
-
-    /// Where a point of the world lies: in `axes`, from the position, in units of the radius.
-    [[nodiscard]] vec3<T> local(const vec3<T>& point, const frame<T>& axes) const {
-        return axes.to_local(point - position_) * (1 / radius_);
+    /// Where it may speak.
+    [[nodiscard]] record_shape<T> shape() const {
+        record_shape<T> s{position_, radius_, normal_.folded<T>(), {0, 0}};
+        if constexpr (Features.ellipse) { s.ellipse = ellipse_.template value<T>(); }
+        return s;
     }
-
-    /// Squared distance of a `local` point in units of the reach: below 1 inside the ellipsoid whose third semi-axis is
-    /// the shorter one.
-    [[nodiscard]] T distance2(const vec3<T>& p) const {
-        if constexpr (Features.ellipse) {
-            const vec2<T> e = ellipse_.template value<T>();
-            const T round = 1 - std::sqrt(e.x * e.x + e.y * e.y);
-            const T flat = round * (p.x * p.x + p.y * p.y) + e.x * (p.x * p.x - p.y * p.y) + e.y * (2 * p.x * p.y);
-            return std::max(T(0), flat) + p.z * p.z;
-        } else {
-            return length2(p);
-        }
-    }
+    [[nodiscard]] frame<T> axes() const { return shape().axes(); }
+    [[nodiscard]] vec3<T> local(const vec3<T>& point, const frame<T>& axes) const { return shape().local(point, axes); }
+    [[nodiscard]] T distance2(const vec3<T>& local) const { return shape().distance2(local); }
 
     /// Irradiance at a `local` point whose normal is `n`, along `axes()`; to first order, never negative. Within the
     /// reach the change is at most about the irradiance itself.

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <aglow/concepts/spectrum.hpp>
 #include <aglow/core/frame.hpp>
@@ -122,23 +124,60 @@ struct record_view {
     vec3<T> normal{};  ///< and its normal, along the record's axes
 };
 
-template <Spectrum S, std::floating_point T, record_features F>
-[[nodiscard]] record_view<T> look(const irradiance_record<S, T, F>& record, const vec3<T>& point, const vec3<T>& normal,
-                                  const lookup_limits<T>& limits) {
+/// Takes no branch, so that several can be worked out side by side.
+template <std::floating_point T>
+[[nodiscard]] inline record_view<T> look(const record_shape<T>& record, const vec3<T>& point, const vec3<T>& normal,
+                                         const lookup_limits<T>& limits) {
     record_view<T> view;
     const frame<T> axes = record.axes();
     view.turn = length2(normal - axes.z) / 2;
-    // Written so that NaN is refused.
-    if (!(view.turn < limits.turn)) { return view; }
-    const T height = glm::dot(point - record.position(), normal + axes.z) / 2;
-    view.judged = verdict::plane;
-    if (!(std::abs(height) <= limits.plane * record.radius())) { return view; }
+    const T height = glm::dot(point - record.position, normal + axes.z) / 2;
     view.local = record.local(point, axes);
     view.t2 = record.distance2(view.local);
-    view.judged = view.t2 < 1 ? verdict::used : verdict::distance;
     view.normal = axes.to_local(normal);
+    // Written so that NaN is refused.
+    view.judged = view.t2 < 1 ? verdict::used : verdict::distance;
+    view.judged = std::abs(height) <= limits.plane * record.radius ? view.judged : verdict::plane;
+    view.judged = view.turn < limits.turn ? view.judged : verdict::normal;
     return view;
 }
+
+template <Spectrum S, std::floating_point T, record_features F>
+[[nodiscard]] record_view<T> look(const irradiance_record<S, T, F>& record, const vec3<T>& point, const vec3<T>& normal,
+                                  const lookup_limits<T>& limits) {
+    return look(record.shape(), point, normal, limits);
+}
+
+/// Eight shapes by number, as vector instructions like them, and the same for views.
+template <std::floating_point T>
+struct eight_shapes {
+    static constexpr std::size_t count = 8;
+    T x[count], y[count], z[count], radius[count], normal_x[count], normal_y[count], ellipse_x[count], ellipse_y[count];
+
+    void set(std::size_t i, const record_shape<T>& s) {
+        x[i] = s.position.x, y[i] = s.position.y, z[i] = s.position.z;
+        radius[i] = s.radius;
+        normal_x[i] = s.normal.x, normal_y[i] = s.normal.y;
+        ellipse_x[i] = s.ellipse.x, ellipse_y[i] = s.ellipse.y;
+    }
+    [[nodiscard]] record_shape<T> at(std::size_t i) const {
+        return {{x[i], y[i], z[i]}, radius[i], {normal_x[i], normal_y[i]}, {ellipse_x[i], ellipse_y[i]}};
+    }
+};
+template <std::floating_point T>
+struct eight_views {
+    static constexpr std::size_t count = 8;
+    verdict judged[count];
+    T t2[count], turn[count], x[count], y[count], normal_x[count], normal_y[count];
+
+    void set(std::size_t i, const record_view<T>& v) {
+        judged[i] = v.judged, t2[i] = v.t2, turn[i] = v.turn;
+        x[i] = v.local.x, y[i] = v.local.y, normal_x[i] = v.normal.x, normal_y[i] = v.normal.y;
+    }
+    [[nodiscard]] record_view<T> at(std::size_t i) const {
+        return {judged[i], t2[i], turn[i], {x[i], y[i], 0}, {normal_x[i], normal_y[i], 0}};
+    }
+};
 
 }  // namespace detail
 
@@ -150,15 +189,25 @@ public:
     record_blend(const vec3<T>& point, const vec3<T>& normal, const detail::lookup_limits<T>& limits)
         : point_{point}, normal_{normal}, limits_{limits} {}
 
-    /// `bend`: how much the record errs by at its own radius, relative to its irradiance.
-    template <record_features F>
-    detail::verdict add(const irradiance_record<S, T, F>& record, T bend) {
-        const detail::record_view<T> view = detail::look(record, point_, normal_, limits_);
-        if (view.judged != detail::verdict::used) { return view.judged; }
-        const T weight = detail::record_weight(limits_.metric, view.t2, view.turn / limits_.turn);
-        if (!(weight > 0)) { return detail::verdict::distance; }
-        take(record, weight, view.t2 * bend, record.extrapolate(view.local, view.normal));
-        return detail::verdict::used;
+    /// Adds the items that `item_at(i)` refers to, for i below `count`: each with a `record` and a `bend`, which is how
+    /// much the record errs by at its own radius, relative to its irradiance. `judged(verdict)` hears of each.
+    template <typename ItemAt, typename Judged>
+    void add(std::size_t count, const ItemAt& item_at, const Judged& judged) {
+        for (std::size_t first = 0; first < count; first += eight) {
+            const std::size_t some = std::min(eight, count - first);
+            detail::eight_shapes<T> shapes;
+            detail::eight_views<T> views;
+            for (std::size_t i = 0; i < eight; ++i) {
+                shapes.set(i, item_at(first + (i < some ? i : 0)).record.shape());
+            }
+            for (std::size_t i = 0; i < eight; ++i) {
+                views.set(i, detail::look(shapes.at(i), point_, normal_, limits_));
+            }
+            for (std::size_t i = 0; i < some; ++i) {
+                const auto& item = item_at(first + i);
+                judged(add(views.at(i), item.record, item.bend));
+            }
+        }
     }
 
     [[nodiscard]] irradiance_answer<S, T> answer() const {
@@ -169,6 +218,17 @@ public:
     }
 
 private:
+    static constexpr std::size_t eight = detail::eight_shapes<T>::count;
+
+    template <record_features F>
+    detail::verdict add(const detail::record_view<T>& view, const irradiance_record<S, T, F>& record, T bend) {
+        if (view.judged != detail::verdict::used) { return view.judged; }
+        const T weight = detail::record_weight(limits_.metric, view.t2, view.turn / limits_.turn);
+        if (!(weight > 0)) { return detail::verdict::distance; }
+        take(record, weight, view.t2 * bend, record.extrapolate(view.local, view.normal));
+        return detail::verdict::used;
+    }
+
     template <record_features F>
     void take(const irradiance_record<S, T, F>& record, T weight, T relative_error, const S& irradiance) {
         sum_ = sum_ + irradiance * static_cast<band_of<S>>(weight);
