@@ -48,8 +48,7 @@ public:
     void search(const covering_question<T>& question, sphere_hits<T, D>& found) const {
         if (directory_.longest() > crowded) { return search_trees(question, found); }
         directory_.visit_near(question.point, [&](const std::uint32_t* numbers, std::uint32_t count) {
-            ask(
-                blocks_.data(), count, [numbers](std::uint32_t i) { return numbers[i]; }, question, found);
+            simd::run_best<T, ask_blocks>(blocks_.data(), numbers, count, question, found);
         });
     }
 
@@ -111,13 +110,10 @@ private:
             const node& at = nodes_[waiting[--count]];
             std::uint32_t near = boxes_near(at, asked);
             if (at.of_blocks) {
-                const std::uint32_t first = at.first;
-                const auto next = [&](std::uint32_t) {
-                    const std::uint32_t lane = first_lane(near);
-                    near &= near - 1;
-                    return first + lane;
-                };
-                ask(blocks_.data(), static_cast<std::uint32_t>(std::popcount(near)), next, question, found);
+                std::uint32_t numbers[lanes];
+                std::uint32_t some = 0;
+                for (; near != 0; near &= near - 1) { numbers[some++] = at.first + first_lane(near); }
+                simd::run_best<T, ask_blocks>(blocks_.data(), &numbers[0], some, question, found);
             } else {
                 for (; near != 0; near &= near - 1) { waiting[count++] = at.first + first_lane(near); }
             }

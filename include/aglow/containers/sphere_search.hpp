@@ -15,32 +15,10 @@
 
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/simd.hpp>
-#include <aglow/core/simd_avx2.hpp>
-#include <aglow/core/simd_avx512.hpp>
-#include <aglow/core/simd_sse.hpp>
+#include <aglow/core/simd_best.hpp>
 #include <aglow/core/vec.hpp>
 
 namespace aglow {
-
-/// The pack of sixteen `T` that suits the flags of this compilation best; all give the same answers.
-template <typename T>
-struct sphere_pack_of {
-    using type = simd::plain<T>;
-};
-template <>
-struct sphere_pack_of<float> {
-#if defined(__AVX512F__) && defined(__AVX2__) && defined(__BMI__) && defined(__POPCNT__)
-    using type = simd::avx512;
-#elif defined(__AVX2__) && defined(__BMI__) && defined(__POPCNT__)
-    using type = simd::avx2;
-#elif defined(__SSE4_2__) && defined(__POPCNT__)
-    using type = simd::sse;
-#else
-    using type = simd::plain<float>;
-#endif
-};
-template <typename T>
-using sphere_pack = typename sphere_pack_of<T>::type;
 
 /// How far rounding may carry a distance past its limit: a search box is this much wider than the spheres it looks for.
 template <typename T>
@@ -114,11 +92,12 @@ public:
         T* distance2;
 
         /// Appends the lanes in `mask`. Expects room for them.
-        void append(const std::uint32_t* items, const sphere_pack<T>& distances2, std::uint32_t mask) {
-            sphere_pack<T>::compress(item, items, mask);
+        template <typename Pack>
+        [[gnu::always_inline]] void append(const std::uint32_t* items, const Pack& distances2, std::uint32_t mask) {
+            Pack::compress(item, items, mask);
             item += std::popcount(mask);
             if constexpr (WithDistances) {
-                sphere_pack<T>::compress(distance2, distances2, mask);
+                Pack::compress(distance2, distances2, mask);
                 distance2 += std::popcount(mask);
             }
         }
@@ -209,7 +188,7 @@ struct covering_question {
     [[nodiscard]] bounds<T> box() const { return {point, point}; }
     [[nodiscard]] T limit2(T stored) const { return stored; }
     template <typename Pack>
-    [[nodiscard]] Pack limits2(const Pack& stored) const {
+    [[nodiscard, gnu::always_inline]] Pack limits2(const Pack& stored) const {
         return stored;
     }
 };
@@ -228,29 +207,30 @@ struct within_question {
     [[nodiscard]] bounds<T> box() const { return {point - half_width, point + half_width}; }
     [[nodiscard]] T limit2(T) const { return limit; }
     template <typename Pack>
-    [[nodiscard]] Pack limits2(const Pack&) const {
+    [[nodiscard, gnu::always_inline]] Pack limits2(const Pack&) const {
         return Pack::all(limit);
     }
 };
 
-/// Adds the answers in blocks of sixteen, `blocks[number(i)]` for i below `count`, to `found`.
-template <typename Block, typename Number, typename Question, typename T, bool D>
-void ask(const Block* blocks, std::uint32_t count, const Number& number, const Question& question,
-         sphere_hits<T, D>& found) {
-    using pack = sphere_pack<T>;
-    // All that the loop needs is at hand by value: what it writes might else be what it reads.
-    const Question asked = question;
-    const pack x = pack::all(asked.point.x), y = pack::all(asked.point.y), z = pack::all(asked.point.z);
-    found.reserve(count * simd::lanes);
-    auto end = found.end();
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const sphere_block<T, simd::lanes>& block = blocks[number(i)];
-        const pack distances2 = pack::length2(pack::sub(pack::load(block.x), x), pack::sub(pack::load(block.y), y),
-                                              pack::sub(pack::load(block.z), z));
-        end.append(block.item, distances2, pack::less(distances2, asked.limits2(pack::load(block.limit2))));
+/// Adds the answers in blocks of sixteen, `blocks[numbers[i]]` for i below `count`, to `found`.
+struct ask_blocks {
+    template <typename Pack, typename Block, typename Question, typename T, bool D>
+    [[gnu::always_inline]] static void run(const Block* blocks, const std::uint32_t* numbers, std::uint32_t count,
+                                           const Question& question, sphere_hits<T, D>& found) {
+        // All that the loop needs is at hand by value: what it writes might else be what it reads.
+        const Question asked = question;
+        const Pack x = Pack::all(asked.point.x), y = Pack::all(asked.point.y), z = Pack::all(asked.point.z);
+        found.reserve(count * simd::lanes);
+        auto end = found.end();
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const sphere_block<T, simd::lanes>& block = blocks[numbers[i]];
+            const Pack distances2 = Pack::length2(Pack::sub(Pack::load(block.x), x), Pack::sub(Pack::load(block.y), y),
+                                                  Pack::sub(Pack::load(block.z), z));
+            end.append(block.item, distances2, Pack::less(distances2, asked.limits2(Pack::load(block.limit2))));
+        }
+        found.end_at(end);
     }
-    found.end_at(end);
-}
+};
 
 /// Adds the answers among the first `count` spheres of a block to `found`, which has room for them; looks at no others,
 /// for they may be in the making.

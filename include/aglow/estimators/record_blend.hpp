@@ -126,8 +126,8 @@ struct record_view {
 
 /// Takes no branch, so that several can be worked out side by side.
 template <std::floating_point T>
-[[nodiscard]] inline record_view<T> look(const record_shape<T>& record, const vec3<T>& point, const vec3<T>& normal,
-                                         const lookup_limits<T>& limits) {
+[[nodiscard, gnu::always_inline]] inline record_view<T> look(const record_shape<T>& record, const vec3<T>& point,
+                                                             const vec3<T>& normal, const lookup_limits<T>& limits) {
     record_view<T> view;
     const frame<T> axes = record.axes();
     view.turn = length2(normal - axes.z) / 2;
@@ -179,6 +179,43 @@ struct eight_views {
     }
 };
 
+template <std::floating_point T>
+[[gnu::always_inline]] inline eight_views<T> look_at(const eight_shapes<T>& shapes, std::size_t count,
+                                                     const vec3<T>& point, const vec3<T>& normal,
+                                                     const lookup_limits<T>& limits) {
+    // Copies, which nothing that is written can be.
+    const eight_shapes<T> these = shapes;
+    const vec3<T> p = point, n = normal;
+    const lookup_limits<T> within = limits;
+    eight_views<T> views;
+    for (std::size_t i = 0; i < count; ++i) { views.set(i, look(these.at(i), p, n, within)); }
+    return views;
+}
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
+template <std::floating_point T>
+[[gnu::target("avx2"), gnu::flatten, gnu::noinline]] eight_views<T> look_at_eight(const eight_shapes<T>& shapes,
+                                                                                  const vec3<T>& point,
+                                                                                  const vec3<T>& normal,
+                                                                                  const lookup_limits<T>& limits) {
+    return look_at(shapes, eight_shapes<T>::count, point, normal, limits);
+}
+#endif
+
+/// What the first `count` shapes look like; all eight at once where the machine has the registers for it.
+template <std::floating_point T>
+[[nodiscard]] eight_views<T> look_at_some(const eight_shapes<T>& shapes, [[maybe_unused]] std::size_t count,
+                                          const vec3<T>& point, const vec3<T>& normal, const lookup_limits<T>& limits) {
+#if defined(__AVX2__)
+    return look_at(shapes, eight_shapes<T>::count, point, normal, limits);
+#else
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx2")) { return look_at_eight(shapes, point, normal, limits); }
+#endif
+    return look_at(shapes, count, point, normal, limits);
+#endif
+}
+
 }  // namespace detail
 
 /// Gathers the answer for one point. Add records in a fixed order, and the answer is the same to the last bit.
@@ -196,13 +233,10 @@ public:
         for (std::size_t first = 0; first < count; first += eight) {
             const std::size_t some = std::min(eight, count - first);
             detail::eight_shapes<T> shapes;
-            detail::eight_views<T> views;
             for (std::size_t i = 0; i < eight; ++i) {
                 shapes.set(i, item_at(first + (i < some ? i : 0)).record.shape());
             }
-            for (std::size_t i = 0; i < eight; ++i) {
-                views.set(i, detail::look(shapes.at(i), point_, normal_, limits_));
-            }
+            const detail::eight_views<T> views = detail::look_at_some(shapes, some, point_, normal_, limits_);
             for (std::size_t i = 0; i < some; ++i) {
                 const auto& item = item_at(first + i);
                 judged(add(views.at(i), item.record, item.bend));
