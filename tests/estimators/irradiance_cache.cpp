@@ -227,6 +227,45 @@ TEST_CASE("irradiance_cache: constant light stays that light at every point betw
     }
 }
 
+TEST_CASE("irradiance_cache: growing and frozen, it blends the records that asking each of them one by one finds") {
+    random_sampler<float> random{16};
+    cache c{10.f, by_distance()};
+    struct entry {
+        cache::record record;
+        float bend;
+    };
+    const auto agrees = [&](const auto& asked, const vec3<float>& p, const vec3<float>& normal) {
+        const detail::lookup_limits<float> limits{c.options().lookup, c.options().reach.metric};
+        record_blend<rgb, float> blend{p, normal, limits};
+        for (std::uint32_t i = 0; i < asked.size(); ++i) {
+            const entry one{asked[i], 0};
+            blend.add(
+                1, [&](std::size_t) -> const entry& { return one; }, [](detail::verdict) {});
+        }
+        const auto expected = blend.answer();
+        const auto answer = asked.lookup(p, normal);
+        // The order of summing is another.
+        return answer.records == expected.records && std::abs(answer.weight - expected.weight) <= 1e-5f &&
+               glm::length(answer.irradiance - expected.irradiance) <= 1e-4f;
+    };
+    // Sizes around those at which a growing cache settles; up to thirty records over a place.
+    int wrong = 0;
+    for (int i = 0; i < 300; ++i) {
+        const vec3<float> at{random.next_1d() * 3, random.next_1d() * 3, 0};
+        c.insert(estimate_at(at, i % 3 == 0 ? -up : up, rgb{1 + at.x, 1, 1 + at.y}, 0.1f + random.next_1d()));
+        wrong += !agrees(c, {random.next_1d() * 3, random.next_1d() * 3, 0}, up);
+    }
+    const auto frozen = c.freeze();
+    std::uint32_t most = 0;
+    for (int i = 0; i < 500; ++i) {
+        const vec3<float> p{random.next_1d() * 3, random.next_1d() * 3, 0};
+        wrong += !agrees(frozen, p, up);
+        most = std::max(most, frozen.lookup(p, up).records);
+    }
+    CHECK(wrong == 0);
+    CHECK(most > 8);
+}
+
 TEST_CASE("irradiance_cache: with exact gradients a plane of light is reproduced, and its error is told as none") {
     // E = 2 + x - y/2 everywhere.
     const auto light = [](float x, float y) { return 2 + x - y / 2; };
