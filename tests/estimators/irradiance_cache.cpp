@@ -256,6 +256,7 @@ TEST_CASE("irradiance_cache: growing and frozen, it blends the records that aski
         wrong += !agrees(c, {random.next_1d() * 3, random.next_1d() * 3, 0}, up);
     }
     const auto frozen = c.freeze();
+    for (std::uint32_t i = 0; i < c.size(); ++i) { wrong += frozen[i].position() != c[i].position(); }
     std::uint32_t most = 0;
     for (int i = 0; i < 500; ++i) {
         const vec3<float> p{random.next_1d() * 3, random.next_1d() * 3, 0};

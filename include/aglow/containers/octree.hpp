@@ -59,8 +59,8 @@ struct octree_refusals {
 /// Space: no bounds are asked for; the trees grow to where the items are. Scaling all input by a power of two changes
 /// nothing. Distances are those of `simd::distance2`, to the bit.
 ///
-/// Memory and speed: an item never moves and costs some 25 to 32 bytes beside its own (float). Insertion is fast;
-/// searches are three to five times faster for what has been through `settle`.
+/// Memory and speed: an item never moves and costs some 25 to 35 bytes beside its own (float). Insertion is fast;
+/// searches are four to eight times faster for what has been through `settle`.
 template <typename Item, std::floating_point T = float>
 class octree {
 public:

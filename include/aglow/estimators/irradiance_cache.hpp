@@ -103,7 +103,7 @@ public:
     /// Holds nothing and answers nothing.
     frozen_irradiance_cache() : frozen_irradiance_cache{std::vector<item>{}, irradiance_cache_options{}} {}
 
-    /// The items are laid out anew, near ones side by side. Expects usable records.
+    /// Near items lie side by side in memory, whatever their numbers. Expects usable records.
     frozen_irradiance_cache(const std::vector<item>& items, const irradiance_cache_options& options)
         : options_{options}, limits_{options.lookup, options.reach.metric} {
         std::vector<stored_sphere<T>> spheres;
@@ -114,9 +114,10 @@ public:
         }
         reaches_ = packed_spheres<T>{std::move(spheres)};
         items_.reserve(items.size());
+        places_.resize(items.size());
         reaches_.renumber([&](std::uint32_t i) {
             items_.push_back(items[i]);
-            return size() - 1;
+            return places_[i] = size() - 1;
         });
     }
 
@@ -160,14 +161,18 @@ public:
     }
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(items_.size()); }
-    [[nodiscard]] const record& operator[](std::uint32_t index) const { return items_[index].record; }
+    /// The record of number `index`, which is where it was in the items. Expects `index < size()`.
+    [[nodiscard]] const record& operator[](std::uint32_t index) const { return items_[places_[index]].record; }
     [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
 
     /// Bytes taken from the heap.
-    [[nodiscard]] std::size_t bytes() const { return items_.capacity() * sizeof(item) + reaches_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const {
+        return items_.capacity() * sizeof(item) + places_.capacity() * sizeof(std::uint32_t) + reaches_.bytes();
+    }
 
 private:
     std::vector<item> items_;
+    std::vector<std::uint32_t> places_;  // of the items, by number
     irradiance_cache_options options_;
     detail::lookup_limits<T> limits_;
     packed_spheres<T> reaches_;
@@ -258,8 +263,8 @@ public:
     /// Bytes taken from the heap.
     [[nodiscard]] std::size_t bytes() const { return tree_.bytes(); }
 
-    /// The records in their present reach, ready to be asked only; near ones get near numbers. Each learns from its
-    /// neighbours how far off its extrapolation is, and, with `smoothing`, what they take its irradiance to be.
+    /// The records in their present reach and in their order, ready to be asked only. Each learns from its neighbours
+    /// how far off its extrapolation is, and, with `smoothing`, what they take its irradiance to be.
     template <Executor E = in_sequence>
     [[nodiscard]] frozen freeze(const E& run = {}) const {
         std::vector<T> bends(size());
