@@ -140,6 +140,54 @@ TEST_CASE("layered_integrator: photon maps look at a furnace and see 1 / (1 - rh
     }
 }
 
+TEST_CASE("layered_integrator: both ways from the first glass, what is behind a pane is known without noise") {
+    // Straight down through the boundary to a glowing floor, and back up to a glowing ceiling.
+    toy_scene<S, float> scene;
+    const auto level = [](float z, const vec3<float>& normal, const support::material<S>& m) {
+        return support::rectangle<S, float>{
+            .corner = {-1, -1, z}, .u = {2, 0, 0}, .v = {0, 2, 0}, .normal = normal, .made_of = m};
+    };
+    scene.rectangles = {level(2, {0, 0, -1}, {.glow = S{5}}), level(0, {0, 0, 1}, {.glass = 1.5}),
+                        level(-1, {0, 0, 1}, {.glow = S{2}})};
+    const support::no_light<S, float> dark;
+    const auto none = [](const auto&, const auto&, float, const auto&, std::uint32_t) { return estimate<S>{}; };
+    const ray<float> down{{0.1f, 0.2f, 1}, {0, 0, -1}};
+    const double reflected = 0.04;  // Fresnel: ((1.5 - 1) / (1.5 + 1))^2
+    const double truth = reflected * 5 + (1 - reflected) * 2;
+    const auto look = [&](std::uint32_t splits) {
+        sample_mean mean;
+        const layered_integrator layered{scene, dark, none, {.split = splits}};
+        for (std::uint64_t i = 0; i < 4000; ++i) {
+            mean.add(double(layered(down, random_numbers<float>{{.path = i}}).value.x));
+        }
+        return mean;
+    };
+    const auto both = look(1);
+    CHECK(both.mean() == Approx(truth));
+    CHECK(both.standard_error() < 1e-6);
+    const auto by_chance = look(0);
+    CHECK(by_chance.agrees(truth));
+    CHECK(by_chance.standard_error() > 0.005);
+}
+
+TEST_CASE("layered_integrator: a mirror before the glass is none of those that are followed both ways") {
+    // Down to a mirror, up to a pane, through it to a glowing ceiling: the share that the pane sends back comes again.
+    toy_scene<S, float> scene;
+    const auto level = [](float z, const vec3<float>& normal, const support::material<S>& m) {
+        return support::rectangle<S, float>{
+            .corner = {-1, -1, z}, .u = {2, 0, 0}, .v = {0, 2, 0}, .normal = normal, .made_of = m};
+    };
+    scene.rectangles = {level(3, {0, 0, -1}, {.glow = S{1}}), level(2, {0, 0, 1}, {.glass = 1.5}),
+                        level(0, {0, 0, 1}, {.mirror = S{0.5f}})};
+    const support::no_light<S, float> dark;
+    const auto none = [](const auto&, const auto&, float, const auto&, std::uint32_t) { return estimate<S>{}; };
+    const layered_integrator layered{scene, dark, none, {.most_bounces = 3, .split = 1}};
+    const ray<float> down{{0.1f, 0.2f, 1}, {0, 0, -1}};
+    for (std::uint64_t i = 0; i < 50; ++i) {
+        CHECK(layered(down, random_numbers<float>{{.path = i}}).value.x == Approx(0.5 * 0.96));
+    }
+}
+
 TEST_CASE("layered_integrator: a depth cap keeps as many surfaces as in path tracing") {
     toy_scene<S, float> scene;
     support::met_panel<S, float> light;

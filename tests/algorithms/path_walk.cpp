@@ -217,6 +217,31 @@ TEST_CASE("path_walk: a terminal answers for diffuse lobes, or lets the path go 
     }
 }
 
+TEST_CASE("path_walk: a terminal is told the whole way over mirrors, and after a matte surface the way from there") {
+    // Down to a mirror, up to a matte ceiling, and from there to wherever.
+    toy_scene<S, float> scene;
+    scene.rectangles = {
+        {.corner = {-9, -9, 0}, .u = {18, 0, 0}, .v = {0, 18, 0}, .normal = {0, 0, 1}, .made_of = {.mirror = S{1}}},
+        {.corner = {-9, -9, 2}, .u = {18, 0, 0}, .v = {0, 18, 0}, .normal = {0, 0, 1}, .made_of = {.diffuse = S{1}}}};
+    const ray<float> eye{{0, 0, 1}, {0, 0, -1}};
+    for (std::uint64_t i = 0; i < 20; ++i) {
+        std::vector<float> ways;
+        std::vector<vec3<float>> places;
+        const auto note = [&](const auto& hit, const auto&, float travelled, float, bool) {
+            ways.push_back(travelled);
+            places.push_back(hit.position);
+            return std::optional<estimate<S>>{};
+        };
+        (void)walk_path(scene, support::no_light<S, float>{}, eye, numbers_of(i), emission_rule::all,
+                        {.most_bounces = 4}, note);
+        REQUIRE_FALSE(ways.empty());
+        CHECK(ways[0] == Approx(3));
+        // Ceiling, mirror, ceiling: both legs of a V, as long as the way to the mirror image.
+        if (ways.size() < 2) { continue; }
+        CHECK(ways[1] == Approx(std::hypot(glm::distance(places[0], places[1]), 4)));
+    }
+}
+
 TEST_CASE("path_walk: a depth cap of n keeps n surfaces that scatter") {
     // Point light in a matte sphere: the k-th surface adds rho^k of the same brightness.
     const toy_scene<S, float> sphere{.balls = {{.radius = 1, .made_of = {.diffuse = S{0.5f}}}}};

@@ -11,7 +11,8 @@
 namespace aglow {
 
 /// An integrator: radiance along a ray, the smooth light at each surface from `Layers`, glossy and specular lobes
-/// followed by sampling. `const`, safe from many threads where the layers are.
+/// followed by sampling; the first mirrors that refract too (`path_options::split`) both ways. `const`, safe from many
+/// threads where the layers are.
 template <Scene World, Illuminator Lights, typename Layers>
 class layered_integrator {
 public:
@@ -27,12 +28,12 @@ public:
         const auto shade = [&](auto& walk, const detail::walk_stop<World>& stop) {
             const lobe_set lobes = stop.hit.lobes();
             if (any(lobes, lobe_set::smooth)) {
-                walk.add(layers_(stop.hit, stop.wo, stop.error, numbers, stop.bounce));
+                walk.add(layers_(stop.hit, stop.wo, stop.error, walk.numbers(), stop.bounce));
             }
             return lobes & ~lobe_set::diffuse;
         };
         detail::path_walk<World, Lights, N> walk{scene_, lights_, numbers, emission_rule::all, options_, eye};
-        const auto light = walk.run(shade);
+        const auto light = walk.run(shade, options_.split);
         return {light.radiance, light.error, light.common, light.bias};
     }
 

@@ -20,6 +20,8 @@ namespace aglow {
 struct path_options {
     std::uint32_t most_bounces{0};   ///< depth cap, 0 for none; a cap makes the picture darker
     std::uint32_t roulette_from{5};  ///< bounces before Russian roulette may end a path
+    std::uint32_t split{2};          ///< of the first surfaces from the eye that both mirror and refract, so many are
+                                     ///< followed both ways instead of one by chance; not by the path tracer
     host_faults* faults{nullptr};    ///< where the host's broken answers are noted; null for nowhere. Must live as long
 };
 
@@ -45,6 +47,7 @@ struct walk_state {
     ray<T> path{};
     S throughput{white<S>()};
     vec3<T> came_from{};  ///< the last point that looked for lights
+    T travelled{0};       ///< since the start or the last diffuse or glossy surface
     T scatter_pdf{0};     ///< density of `path` there; 0 where specular or the eye
     lobe_set last{lobe_set::none};
     bool mirrored{true};    ///< only specular bounces so far
@@ -124,6 +127,7 @@ template <Scene World, Numbers N>
     at.scattered = at.scattered || (!at.mirrored && any(next->lobe, lobe_set::smooth));
     at.mirrored = at.mirrored && !any(next->lobe, lobe_set::smooth);
     at.scatter_pdf = any(next->lobe, lobe_set::smooth) ? T(next->pdf) : T(0);
+    if (any(next->lobe, lobe_set::smooth)) { at.travelled = 0; }
     at.came_from = vec3<T>(hit.position);
     at.path = {lift(at.came_from, vec3<T>(hit.normal), wi, error), wi};
     return true;
@@ -136,7 +140,7 @@ struct walk_stop {
 
     const hit_of<World>& hit;
     vec3<T> wo;
-    T travelled;  ///< length of the last leg
+    T travelled;  ///< since the start or the last diffuse or glossy surface: over mirrors, all legs
     T error;      ///< of the position
     std::uint32_t bounce;
 };
@@ -155,10 +159,11 @@ public:
         : scene_{scene}, lights_{lights}, numbers_{numbers}, rule_{rule}, options_{options}, at_{.path = start} {}
 
     /// Walks to the end. At each surface, `shade(walk, stop)` adds the light that it sends by its smooth lobes, and
-    /// returns the lobes to go on by.
+    /// returns the lobes to go on by. At the first `splits` surfaces, mirrors all, the walk goes both ways where they
+    /// are two.
     template <typename Shade>
-    [[nodiscard]] incoming_light<S, T> run(const Shade& shade) {
-        for (std::uint32_t bounce = 1;; ++bounce) {
+    [[nodiscard]] incoming_light<S, T> run(const Shade& shade, std::uint32_t splits = 0, std::uint32_t bounce = 1) {
+        for (;; ++bounce) {
             const auto hit = scene_.intersect(at_.path);
             if (!hit) { return leave(bounce); }
             if (!is_sound(*hit, at_.path)) {
@@ -169,9 +174,17 @@ public:
             const walk_stop<World> stop = arrive(*hit, bounce);
             if (options_.most_bounces != 0 && bounce > options_.most_bounces) { return result_; }
             const lobe_set on = shade(*this, stop);
+            if constexpr (can_fork) {
+                // Of specular lobes alone: a smooth one shares the light with shadow rays that count on the others too.
+                const bool forks = splits > 0 && at_.mirrored && on == lobe_set::specular;
+                if (forks) { return split(*hit, stop, shade, splits - 1); }
+            }
             if (!scatter(at_, *hit, stop.wo, stop.error, numbers_, bounce, on, options_)) { return result_; }
         }
     }
+
+    /// The walk's own numbers: another set in each branch.
+    [[nodiscard]] const N& numbers() const { return numbers_; }
 
     /// Whether the walk met nothing but mirrors before where it stands.
     [[nodiscard]] bool mirrored() const { return at_.mirrored; }
@@ -195,13 +208,35 @@ public:
     [[nodiscard]] double carried() const { return static_cast<double>(max_component(at_.throughput)); }
 
 private:
+    /// Whether surfaces that mirror and refract can be here at all.
+    static constexpr bool can_fork = (static_lobes<World> & lobe_set::specular) == lobe_set::specular;
+
+    template <typename Shade>
+    incoming_light<S, T> split(const hit_of<World>& hit, const walk_stop<World>& stop, const Shade& shade,
+                               std::uint32_t splits) {
+        for (const lobe_set way : {lobe_set::specular_reflection, lobe_set::specular_transmission}) {
+            const auto name = static_cast<std::uint64_t>(way);
+            path_walk branch{scene_, lights_, N{numbers_.fork(mix(stop.bounce, name))}, rule_, options_, at_.path};
+            branch.at_ = at_;
+            if (!scatter(branch.at_, hit, stop.wo, stop.error, branch.numbers_, stop.bounce, way, options_)) {
+                continue;
+            }
+            const auto light = branch.run(shade, splits, stop.bounce + 1);
+            result_.radiance = result_.radiance + light.radiance;
+            result_.error += light.error;
+            result_.common += light.common;
+            result_.bias += light.bias;
+        }
+        return result_;
+    }
+
     walk_stop<World> arrive(const hit_of<World>& hit, std::uint32_t bounce) {
         const vec3<T> wo = -at_.path.direction;
-        const T travelled = glm::dot(vec3<T>(hit.position) - at_.path.origin, at_.path.direction);
-        if (bounce == 1) { result_.distance = travelled; }
+        at_.travelled += glm::dot(vec3<T>(hit.position) - at_.path.origin, at_.path.direction);
+        if (bounce == 1) { result_.distance = at_.travelled; }
         const S glow = emitted(hit, wo);
         if (!is_radiance(glow) || !is_black(glow)) { add(glow * B(emission_share(at_, lights_, hit, rule_, bounce))); }
-        return {hit, wo, travelled, error_of(hit, at_.path.origin), bounce};
+        return {hit, wo, at_.travelled, error_of(hit, at_.path.origin), bounce};
     }
 
     incoming_light<S, T> leave(std::uint32_t bounce) {
@@ -212,7 +247,7 @@ private:
 
     const World& scene_;
     const Lights& lights_;
-    const N& numbers_;
+    N numbers_;
     emission_rule rule_;
     const path_options& options_;
     walk_state<World> at_;
@@ -224,9 +259,9 @@ private:
 /// Walks along `start` and returns the radiance that comes back along it, and the distance of the first hit.
 ///
 /// `terminal(hit, wo, travelled, error, mirrored)` may end the walk with an optional `estimate` of the radiance that
-/// the diffuse lobes of `hit` send towards `wo`, direct light included; `travelled` is the length of the last leg,
-/// `mirrored` tells that there were only mirrors before. Samples with broken hits or numbers end where they are, never
-/// summed.
+/// the diffuse lobes of `hit` send towards `wo`, direct light included; `travelled` is the way from the last
+/// diffuse or glossy surface, `mirrored` tells that there were only mirrors before. Samples with broken hits or numbers
+/// end where they are, never summed.
 template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
 [[nodiscard]] incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
     const World& scene, const Lights& lights, const ray<scalar_of<World>>& start, const N& numbers,
