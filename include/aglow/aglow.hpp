@@ -93,6 +93,7 @@
 #include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/plan.hpp>
 #include <aglow/algorithms/precompute_irradiance.hpp>
+#include <aglow/algorithms/preparation.hpp>
 #include <aglow/algorithms/progressive.hpp>
 #include <aglow/algorithms/stiffness.hpp>
 #include <aglow/algorithms/trace_photons.hpp>

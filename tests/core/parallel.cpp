@@ -1,5 +1,6 @@
 #include <aglow/core/parallel.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -148,4 +149,22 @@ TEST_CASE("parallel: sums by block, joined in block order, are the same bits for
     const float reference = sum(in_sequence{});
     for (const unsigned threads : {1u, 2u, 3u, 8u}) { CHECK(sum(own_threads{threads}) == reference); }
     CHECK(sum(archetypes::executor{}) == reference);
+}
+
+TEST_CASE("parallel: steps of spread_step meet every place once, and the first few lie far apart") {
+    for (std::size_t count = 1; count <= 400; ++count) {
+        const std::size_t step = aglow::spread_step(count);
+        std::vector<char> met(count, 0);
+        for (std::size_t i = 0; i < count; ++i) { ++met[i * step % count]; }
+        CAPTURE(count, step);
+        CHECK(std::all_of(met.begin(), met.end(), [](char times) { return times == 1; }));
+        if (count < 100) { continue; }
+        // Of the first eight none is nearer to another than a third of even spacing, the ring closed; in large rings.
+        for (std::size_t i = 0; i < 8; ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const std::size_t across = (i - j) * step % count;
+                CHECK(std::min(across, count - across) * 24 >= count);
+            }
+        }
+    }
 }

@@ -1,8 +1,10 @@
 // Places where a picture will ask for irradiance: what a fill pass works on.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <aglow/algorithms/fill_cache.hpp>
@@ -20,6 +22,7 @@ struct view_options {
     std::uint32_t looks{1};         ///< rays per pixel; more find more of what mirrors and glass show
     std::uint32_t most_bounces{8};  ///< surfaces followed through mirrors and gloss; the picture itself goes on further
     std::uint64_t seed{0};
+    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
 };
 
 namespace detail {
@@ -54,14 +57,19 @@ void look(const World& scene, const ray<scalar_of<World>>& eye, scalar_of<World>
 }  // namespace detail
 
 /// The diffuse places that the rays `eye(film_point)` of a picture meet, row by row, each side of a surface that lets
-/// light through a candidate of its own. The same for any executor.
+/// light through a candidate of its own. The same for any executor. Stopped early, rows far apart were looked at.
 template <Scene World, typename Eye, Executor Run = in_sequence>
 [[nodiscard]] auto cache_candidates(const World& scene, const Eye& eye, const view_options& options,
                                     const Run& run = {}) {
     using T = scalar_of<World>;
     using candidates = std::vector<cache_candidate<T>>;
     std::vector<candidates> rows(options.height);
-    run(options.height, [&](std::size_t y) {
+    const std::size_t step = spread_step(options.height);
+    std::atomic<std::size_t> done{0};
+    std::atomic<bool> stop{false};
+    run(options.height, [&](std::size_t row) {
+        if (stop) { return; }
+        const std::size_t y = row * step % options.height;
         for (std::size_t x = 0; x < options.width; ++x) {
             const std::uint64_t pixel = y * options.width + x;
             for (std::uint32_t i = 0; i < options.looks; ++i) {
@@ -75,6 +83,8 @@ template <Scene World, typename Eye, Executor Run = in_sequence>
                              rows[y]);
             }
         }
+        const double share = static_cast<double>(++done) / static_cast<double>(options.height);
+        if (options.progress && !options.progress(share)) { stop = true; }
     });
     candidates all;
     for (candidates& row : rows) { all.insert(all.end(), row.begin(), row.end()); }

@@ -13,6 +13,7 @@
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/algorithms/preparation.hpp>
 #include <aglow/estimators/irradiance_cache.hpp>
 
 namespace aglow {
@@ -106,6 +107,31 @@ struct caching_options {
     path_options paths{};  ///< through mirrors and gloss
 };
 
+namespace detail {
+
+/// Looks a picture over and fills a cache for it, two phases of a preparation. Returns what all its records are off by
+/// together.
+template <Scene World, typename Eye, typename Reader, Executor Run, typename Frozen>
+[[nodiscard]] auto cache_for(const World& scene, const bounds<scalar_of<World>>& box, const Eye& eye,
+                             const Reader& reader, const caching_options& options, const Run& run,
+                             const preparation_progress& progress, Frozen& frozen, fill_result& filled) {
+    preparation_report report{progress};
+    view_options view = options.view;
+    view.progress = report.phase(preparation_phase::places, view.progress);
+    const auto places = cache_candidates(scene, eye, view, run);
+    const auto tell = report.phase(preparation_phase::records);
+    irradiance_cache<spectrum_of<World>, scalar_of<World>> cache{box, options.cache};
+    filled = fill_cache(cache, places, reader, options.fill, run, [&](const fill_progress& now) {
+        const double left = static_cast<double>(now.uncovered) / static_cast<double>(now.candidates);
+        return !tell || tell(1 - left);
+    });
+    if (tell && !filled.cancelled) { (void)tell(1); }
+    frozen = cache.freeze(run);
+    return shared_at(cache, frozen, places);
+}
+
+}  // namespace detail
+
 /// An integrator: direct light by shadow rays, indirect light from an irradiance cache whose gather rays are
 /// path-traced. Fills the cache for the picture of `eye` when made. `const`, safe from many threads.
 template <Scene World, Illuminator Lights>
@@ -115,16 +141,15 @@ public:
     using scalar = scalar_of<World>;
     using cache_type = frozen_irradiance_cache<spectrum, scalar>;
 
-    /// `scene_bounds` is what the cache's lengths are measured by.
+    /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut the filling short: the picture
+    /// then gathers afresh where it finds no record.
     template <typename Eye, Executor Run = in_sequence>
     irradiance_caching(const World& scene, const Lights& lights, const bounds<scalar>& scene_bounds, const Eye& eye,
-                       const caching_options& options = {}, const Run& run = {})
+                       const caching_options& options = {}, const Run& run = {},
+                       const preparation_progress& progress = {})
         : scene_{scene}, lights_{lights}, options_{options}, source_{scene, lights, options.paths} {
-        irradiance_cache<spectrum, scalar> cache{scene_bounds, options.cache};
-        const auto places = cache_candidates(scene, eye, options.view, run);
-        filled_ = fill_cache(cache, places, path_reader<World, Lights>{source_}, options.fill, run);
-        cache_ = cache.freeze(run);
-        shared_ = detail::shared_at(cache, cache_, places);
+        const path_reader<World, Lights> reader{source_};
+        shared_ = detail::cache_for(scene, scene_bounds, eye, reader, options, run, progress, cache_, filled_);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
@@ -172,19 +197,15 @@ public:
     using scalar = scalar_of<World>;
     using cache_type = frozen_irradiance_cache<spectrum, scalar>;
 
-    /// `scene_bounds` is what the cache's lengths are measured by.
+    /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut each phase short.
     template <typename Eye, Executor Run = in_sequence>
     gather_caching(const World& scene, const Lights& lights, const bounds<scalar>& scene_bounds, const Eye& eye,
-                   const gather_caching_options& options = {}, const Run& run = {})
-        : scene_{scene},
-          lights_{lights},
-          options_{options},
-          base_{scene, lights, options.photons, options.irradiance, run} {
-        irradiance_cache<spectrum, scalar> cache{scene_bounds, options.caching.cache};
-        const auto places = cache_candidates(scene, eye, options.caching.view, run);
-        filled_ = fill_cache(cache, places, reader(), options.caching.fill, run);
-        cache_ = cache.freeze(run);
-        shared_ = base_.points().shared() + detail::shared_at(cache, cache_, places);
+                   const gather_caching_options& options = {}, const Run& run = {},
+                   const preparation_progress& progress = {})
+        : scene_{scene}, lights_{lights}, options_{options}, base_{scene, lights,  options.photons, options.irradiance,
+                                                                   run,   progress} {
+        shared_ = base_.points().shared() + detail::cache_for(scene, scene_bounds, eye, reader(), options.caching, run,
+                                                              progress, cache_, filled_);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.

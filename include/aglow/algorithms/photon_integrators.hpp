@@ -10,6 +10,7 @@
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/photon_source.hpp>
 #include <aglow/algorithms/precompute_irradiance.hpp>
+#include <aglow/algorithms/preparation.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
 
 namespace aglow {
@@ -22,6 +23,18 @@ struct photon_mapping_options {
     path_options paths{};         ///< through mirrors and gloss
 };
 
+namespace detail {
+
+/// Traces photons as a phase of a preparation.
+template <typename World, typename Lights, typename Run>
+[[nodiscard]] auto trace_photons(const World& scene, const Lights& lights, photon_options options, const Run& run,
+                                 preparation_report& report) {
+    options.progress = report.phase(preparation_phase::photons, options.progress);
+    return aglow::trace_photons(scene, lights, options, run);
+}
+
+}  // namespace detail
+
 /// An integrator: direct light by shadow rays or from its map, caustics and indirect light straight from theirs. Traces
 /// its photons when made. Keeps references to scene and lights; `const`, safe from many threads.
 template <Scene World, Illuminator Lights>
@@ -31,13 +44,14 @@ public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
 
+    /// `progress` may cut the photons short.
     template <Executor Run = in_sequence>
     photon_mapping(const World& scene, const Lights& lights, const photon_mapping_options& options = {},
-                   const Run& run = {})
-        : scene_{scene},
-          lights_{lights},
-          options_{options},
-          maps_{trace_photons(scene, lights, options.photons, run)} {}
+                   const Run& run = {}, const preparation_progress& progress = {})
+        : scene_{scene}, lights_{lights}, options_{options} {
+        detail::preparation_report report{progress};
+        maps_ = detail::trace_photons(scene, lights, options.photons, run, report);
+    }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
@@ -91,9 +105,13 @@ public:
 
     template <Executor Run = in_sequence>
     gather_base(const World& scene, const Lights& lights, const photon_options& photons,
-                const irradiance_options& irradiance, const Run& run = {})
-        : maps_{trace_photons(scene, lights, with_reflected(photons), run)},
-          points_{precompute_irradiance(scene, lights, maps_, irradiance, run)} {}
+                const irradiance_options& irradiance, const Run& run = {}, const preparation_progress& progress = {}) {
+        detail::preparation_report report{progress};
+        maps_ = detail::trace_photons(scene, lights, with_reflected(photons), run, report);
+        irradiance_options told = irradiance;
+        told.progress = report.phase(preparation_phase::irradiance, irradiance.progress);
+        points_ = precompute_irradiance(scene, lights, maps_, told, run);
+    }
 
     [[nodiscard]] const photon_maps<spectrum, scalar>& maps() const { return maps_; }
     [[nodiscard]] const irradiance_points<spectrum, scalar>& points() const { return points_; }
@@ -124,13 +142,12 @@ public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
 
+    /// `progress` may cut the photons and their irradiance short.
     template <Executor Run = in_sequence>
     final_gathering(const World& scene, const Lights& lights, const final_gathering_options& options = {},
-                    const Run& run = {})
-        : scene_{scene},
-          lights_{lights},
-          options_{options},
-          base_{scene, lights, options.photons, options.irradiance, run} {}
+                    const Run& run = {}, const preparation_progress& progress = {})
+        : scene_{scene}, lights_{lights}, options_{options}, base_{scene, lights,  options.photons, options.irradiance,
+                                                                   run,   progress} {}
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct irradiance_options {
     std::uint32_t shadow_rays{8};  ///< looks at the lights per point; 0 takes direct light from the direct map
     density_options density{};     ///< for the caustic and the indirect map
     std::uint64_t seed{0};
+    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
 };
 
 namespace detail {
@@ -135,10 +138,39 @@ template <Spectrum S, std::floating_point T>
     return {(sum.indirect * indirect + sum.caustic * caustic) / sum.all, sum.bias / sum.all};
 }
 
+/// Fills all points, block by block and far apart from one block to the next, and drops those that were not reached
+/// when `progress` said to stop.
+template <typename Point, typename Fill, Executor Run>
+void keep_filled(std::vector<Point>& points, const std::function<bool(double)>& progress, const Fill& fill,
+                 const Run& run) {
+    constexpr std::size_t block = 64;
+    const std::size_t blocks = (points.size() + block - 1) / block;
+    const std::size_t step = spread_step(blocks);
+    std::vector<char> filled(blocks, 0);
+    std::atomic<std::size_t> done{0};
+    std::atomic<bool> stop{false};
+    run(blocks, [&](std::size_t task) {
+        if (stop) { return; }
+        const std::size_t b = task * step % blocks;
+        const std::size_t last = std::min(points.size(), (b + 1) * block);
+        for (std::size_t i = b * block; i < last; ++i) { fill(i); }
+        filled[b] = 1;
+        const double share = static_cast<double>(++done) / static_cast<double>(blocks);
+        if (progress && !progress(share)) { stop = true; }
+    });
+    if (!stop) { return; }
+    std::vector<Point> kept;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (filled[i / block]) { kept.push_back(points[i]); }
+    }
+    points = std::move(kept);
+}
+
 }  // namespace detail
 
 /// Irradiance from all light at one in `options.every` photons of each map, on the photons' side. Points keep the
-/// radius of their indirect estimate. The same for any executor. O(points (k + shadow rays)).
+/// radius of their indirect estimate. The same for any executor. Stopped early, there are fewer points, spread over all
+/// places, and gather rays that find none near go on instead. O(points (k + shadow rays)).
 template <Scene World, Illuminator Lights, Executor Run = in_sequence>
 [[nodiscard]] auto precompute_irradiance(const World& scene, const Lights& lights,
                                          const photon_maps<spectrum_of<World>, scalar_of<World>>& maps,
@@ -164,26 +196,25 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
                         return all.empty() ? T(0) : std::max(max_abs(all.low), max_abs(all.high));
                     }());
     std::vector<detail::shared_part> parts(points.size());
-    for_each_block(run, points.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            irradiance_point<S, T>& p = points[i];
-            const auto seen = [&](const photon_map<S, T>& map) {
-                return detail::seen_irradiance<World, S>(scene, map, p.position, p.normal, error, options);
-            };
-            const auto indirect = seen(maps.indirect);
-            const auto caustic = seen(maps.caustic);
-            const S direct = options.shadow_rays == 0 ? seen(maps.direct).value
-                                                      : direct_irradiance(scene, lights, p.position, p.normal, error,
-                                                                          options.shadow_rays, mix(options.seed, i));
-            p.irradiance = direct + indirect.value;
-            p.caustic = caustic.value;
-            p.error = caustic.error + indirect.error;
-            p.radius = indirect.count > 0 ? indirect.radius : T(0);
-            parts[i] = detail::shared_part_of<S, T>(direct, indirect, caustic);
-            p.cut = detail::is_cut(scene, p.position + p.normal * error, frame<T>{p.normal},
-                                   std::max(p.radius, caustic.radius));
-        }
-    });
+    const auto fill = [&](std::size_t i) {
+        irradiance_point<S, T>& p = points[i];
+        const auto seen = [&](const photon_map<S, T>& map) {
+            return detail::seen_irradiance<World, S>(scene, map, p.position, p.normal, error, options);
+        };
+        const auto indirect = seen(maps.indirect);
+        const auto caustic = seen(maps.caustic);
+        const S direct = options.shadow_rays == 0 ? seen(maps.direct).value
+                                                  : direct_irradiance(scene, lights, p.position, p.normal, error,
+                                                                      options.shadow_rays, mix(options.seed, i));
+        p.irradiance = direct + indirect.value;
+        p.caustic = caustic.value;
+        p.error = caustic.error + indirect.error;
+        p.radius = indirect.count > 0 ? indirect.radius : T(0);
+        parts[i] = detail::shared_part_of<S, T>(direct, indirect, caustic);
+        p.cut = detail::is_cut(scene, p.position + p.normal * error, frame<T>{p.normal},
+                               std::max(p.radius, caustic.radius));
+    };
+    detail::keep_filled(points, options.progress, fill, run);
     shared_error shared = detail::shared_by(parts, maps.indirect.common, maps.caustic.common);
     // A gather averages over many points, so what they lose in the mean can be given back to each. How well that is
     // known, by half, stays.

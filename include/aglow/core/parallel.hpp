@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -80,6 +81,14 @@ private:
 
     unsigned count_;
 };
+
+/// A step through a ring of `count` places that meets each once, the first few of them far from one another: place
+/// i step mod count, about the golden ratio apart. What is cut short in this order is thin, not half.
+[[nodiscard]] constexpr std::size_t spread_step(std::size_t count) {
+    std::size_t step = std::max<std::size_t>(1, count * 377 / 610);
+    while (std::gcd(step, count) > 1) { ++step; }
+    return step;
+}
 
 /// Splits [0, count) into blocks of `block` items and runs `body(block_index, first, last)` for each. The blocks do not
 /// depend on the number of threads, so what is joined in block order is the same for any number. Expects `block` > 0.
