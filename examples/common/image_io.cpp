@@ -33,6 +33,19 @@ Imf::Slice slice(char* pixels, std::size_t width, int band) {
     return {Imf::FLOAT, pixels + sizeof(float) * static_cast<std::size_t>(band), step, step * width};
 }
 
+/// The numbers of a picture, each to the nearest half.
+std::vector<half> halved(const picture& image) {
+    std::vector<half> made;
+    made.reserve(3 * image.pixels.size());
+    for (const aglow::vec3<float>& p : image.pixels) { made.insert(made.end(), {half(p.x), half(p.y), half(p.z)}); }
+    return made;
+}
+
+Imf::Slice half_slice(std::vector<half>& numbers, std::size_t width, int band) {
+    constexpr std::size_t step = 3 * sizeof(half);
+    return {Imf::HALF, reinterpret_cast<char*>(numbers.data() + band), step, step * width};
+}
+
 /// Lets `write` make a file beside `file`, then puts it in place; nothing is left behind where it throws.
 void replace_whole(const std::filesystem::path& file, const std::function<void(const std::string&)>& write) {
     const std::filesystem::path partial = file.string() + ".part";
@@ -48,21 +61,26 @@ void replace_whole(const std::filesystem::path& file, const std::function<void(c
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, const std::vector<layer>& layers) {
+void write_exr(const std::filesystem::path& file, const std::vector<layer>& layers, precision kept) {
     if (layers.empty()) { throw std::runtime_error("cannot write " + file.string() + ": no picture"); }
     const std::size_t width = layers.front().image.width;
     const std::size_t height = layers.front().image.height;
     Imf::Header header{static_cast<int>(width), static_cast<int>(height)};
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer frame;
+    std::vector<std::vector<half>> halves;
+    halves.reserve(layers.size());
     for (const layer& l : layers) {
         if (l.image.width != width || l.image.height != height) {
             throw std::runtime_error("cannot write " + file.string() + ": layer " + l.name + " has another size");
         }
         char* pixels = const_cast<char*>(reinterpret_cast<const char*>(l.image.pixels.data()));
+        if (kept == precision::half) { halves.push_back(halved(l.image)); }
         for (int band = 0; band < 3; ++band) {
-            header.channels().insert(channel(l.name, band), Imf::Channel{Imf::FLOAT});
-            frame.insert(channel(l.name, band), slice(pixels, width, band));
+            const std::string name = channel(l.name, band);
+            const bool single = kept == precision::single;
+            header.channels().insert(name, Imf::Channel{single ? Imf::FLOAT : Imf::HALF});
+            frame.insert(name, single ? slice(pixels, width, band) : half_slice(halves.back(), width, band));
         }
     }
     replace_whole(file, [&](const std::string& partial) {

@@ -15,9 +15,15 @@ struct layer {
     picture image;
 };
 
-/// Writes 32-bit floats; every layer has the size of the first. Throws `std::runtime_error` that names the file; an
-/// older file of that name is then untouched.
-void write_exr(const std::filesystem::path& file, const std::vector<layer>& layers);
+/// What the second of two independent pictures of the same is called, where a file holds both.
+inline constexpr const char* second_half = "second";
+
+/// Bits of a number in a file: a half has 11 significant ones, and half the size.
+enum class precision { single, half };
+
+/// Writes floats; every layer has the size of the first. Throws `std::runtime_error` that names the file; an older file
+/// of that name is then untouched.
+void write_exr(const std::filesystem::path& file, const std::vector<layer>& layers, precision kept = precision::single);
 
 /// The layer `name` of a file, the nameless one by default. Throws `std::runtime_error` that names the file.
 [[nodiscard]] picture read_exr(const std::filesystem::path& file, const std::string& name = {});

@@ -48,7 +48,8 @@ host::render_result render(const host::render_options& options) {
 void write(const host::render_options& options, const host::render_result& result) {
     fs::path png = options.output;
     if (options.output.extension() == ".exr") {
-        host::write_exr(options.output, result.layers);
+        host::write_exr(options.output, result.layers,
+                        options.reference ? host::precision::half : host::precision::single);
         std::printf("%s\n", options.output.c_str());
         png.replace_extension(".png");
         if (!host::has_png()) { return; }

@@ -96,7 +96,8 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     app.add_option("--method", how, "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
     app.add_option("--output", o.output, "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
     app.add_option("--spp", o.samples, "samples per pixel [16]")->check(between(1, 1 << 24));
-    app.add_option("--time", o.seconds, "seconds in all: as many samples as fit, instead of --spp")
+    app.add_option("--time", o.seconds,
+                   "seconds in all, preparation included: as many samples as fit, instead of --spp")
         ->check(between(0.01, 1e7));
     app.add_option("--threads", o.threads, "threads; the picture does not depend on them [all cores]")
         ->check(between(1, 1024));
@@ -115,6 +116,8 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     app.add_option("--exposure", o.exposure, "of the PNG: a factor [1]")->check(between(1e-6, 1e6));
     app.add_option("--until", until, "render on until an audit certifies this mean relative error, such as 5%");
     app.add_flag("--error", o.error, "audit the picture; error bars as a layer and a heat map beside the picture");
+    app.add_flag("--reference", o.reference,
+                 "path tracing in two independent halves of --spp samples each, in one file of half floats");
     app.add_flag("--list", o.list, "list the built-in scenes");
     try {
         app.parse(count, words);
@@ -128,6 +131,11 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     o.show = chosen(views, "--view", show);
     if (!size.empty()) { read_size(size, o); }
     if (!until.empty()) { o.until = error_share(until); }
+    if (o.reference &&
+        (app.count("--method") + app.count("--view") + app.count("--until") > 0 || o.layers || o.error)) {
+        throw usage_error(
+            "--reference makes one kind of picture: --method, --view, --layers, --until, --error do not go with it");
+    }
     if (o.output.empty()) { o.output = std::filesystem::path{o.scene}.stem().string() + ".exr"; }
     if (o.output.extension() != ".exr" && o.output.extension() != ".png") {
         throw usage_error("--output " + o.output.string() + ": the name must end in .exr or .png");

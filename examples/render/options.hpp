@@ -1,6 +1,7 @@
 // What the person at the command line asks for.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -20,6 +21,8 @@ struct render_options {
     std::filesystem::path output{};
     std::uint32_t samples{16};
     double seconds{0};
+    /// What `seconds` are counted from.
+    std::chrono::steady_clock::time_point begun{std::chrono::steady_clock::now()};
     unsigned threads{0};
     std::uint64_t seed{0};
     std::size_t width{256};
@@ -34,6 +37,8 @@ struct render_options {
     bool error{false};
     /// The mean relative error that an audit shall certify; 0 for as many samples as told.
     double until{0};
+    /// Path tracing in two independent halves, in one file of half floats.
+    bool reference{false};
     bool list{false};
     float exposure{1};
 };

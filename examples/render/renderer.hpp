@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -28,6 +27,7 @@
 #include "common/progress.hpp"
 #include "render/certify.hpp"
 #include "render/options.hpp"
+#include "render/phases.hpp"
 #include "render/report.hpp"
 #include "render/usage_error.hpp"
 
@@ -43,9 +43,15 @@ class renderer {
 
 public:
     renderer(const World& scene, const light_set<T>& lights, const camera<T>& view, const render_options& options)
-        : scene_{scene}, lights_{lights}, view_{view}, options_{options}, run_{threads(options)} {}
+        : scene_{scene},
+          lights_{lights},
+          view_{view},
+          options_{options},
+          run_{threads(options)},
+          budget_{options.seconds, [begun = options.begun] { return since(begun); }} {}
 
     [[nodiscard]] render_result render() {
+        if (options_.reference) { return reference(); }
         for (const auto& o : aglow::plan_for(scene_).left_out) {
             result_.notes.push_back("left out: " + o.part + ", " + o.why);
         }
@@ -75,16 +81,11 @@ private:
 
     // ---- settings ---------------------------------------------------------------------------------------------------
 
-    [[nodiscard]] aglow::photon_options photons(aglow::photon_options wanted) {
+    [[nodiscard]] aglow::photon_options photons(aglow::photon_options wanted) const {
         wanted.direct = options_.direct_photons.value_or(wanted.direct);
         wanted.caustic = options_.caustic_photons.value_or(wanted.caustic);
         wanted.indirect = options_.indirect_photons.value_or(wanted.indirect);
         wanted.seed = options_.seed;
-        wanted.progress = [this](double share) {
-            if (preparing_) { preparing_->show(share); }
-            if (share >= 1) { photons_traced_ = since(start_); }
-            return true;
-        };
         return wanted;
     }
     [[nodiscard]] aglow::density_options density() const {
@@ -106,9 +107,9 @@ private:
     // ---- methods ----------------------------------------------------------------------------------------------------
 
     void irradiance_cache() {
-        const aglow::irradiance_caching<World, light_set<T>> integrator = prepare("irradiance cache", [&] {
-            return aglow::irradiance_caching<World, light_set<T>>{scene_, lights_,   scene_.bounds(),
-                                                                  eye(),  caching(), run_};
+        const aglow::irradiance_caching<World, light_set<T>> integrator = prepare([&](const auto& told) {
+            return aglow::irradiance_caching<World, light_set<T>>{scene_, lights_, scene_.bounds(), eye(), caching(),
+                                                                  run_,   told};
         });
         finish(integrator, nullptr, &integrator.cache());
     }
@@ -117,8 +118,8 @@ private:
         o.photons = photons(o.photons);
         o.density = density();
         o.direct_from_map = o.photons.direct > 0;
-        const aglow::photon_mapping<World, light_set<T>> integrator = prepare("photons", [&] {
-            return aglow::photon_mapping<World, light_set<T>>{scene_, lights_, o, run_};
+        const aglow::photon_mapping<World, light_set<T>> integrator = prepare([&](const auto& told) {
+            return aglow::photon_mapping<World, light_set<T>>{scene_, lights_, o, run_, told};
         });
         finish(integrator, &integrator.maps(), nullptr);
     }
@@ -129,8 +130,8 @@ private:
         o.irradiance.density.count = o.density.count;
         o.irradiance.seed = options_.seed;
         o.rays = options_.gather_rays.value_or(o.rays);
-        const aglow::final_gathering<World, light_set<T>> integrator = prepare("irradiance at photons", [&] {
-            return aglow::final_gathering<World, light_set<T>>{scene_, lights_, o, run_};
+        const aglow::final_gathering<World, light_set<T>> integrator = prepare([&](const auto& told) {
+            return aglow::final_gathering<World, light_set<T>>{scene_, lights_, o, run_, told};
         });
         finish(integrator, &integrator.maps(), nullptr);
     }
@@ -141,22 +142,18 @@ private:
         o.irradiance.density.count = o.density.count;
         o.irradiance.seed = options_.seed;
         o.caching = caching();
-        const aglow::gather_caching<World, light_set<T>> integrator = prepare("irradiance cache", [&] {
-            return aglow::gather_caching<World, light_set<T>>{scene_, lights_, scene_.bounds(), eye(), o, run_};
+        const aglow::gather_caching<World, light_set<T>> integrator = prepare([&](const auto& told) {
+            return aglow::gather_caching<World, light_set<T>>{scene_, lights_, scene_.bounds(), eye(), o, run_, told};
         });
         finish(integrator, &integrator.maps(), &integrator.cache());
     }
 
-    /// Makes an integrator and notes how long its photons took, and how long `rest`.
+    /// Makes an integrator, its phases watched.
     template <typename Make>
-    auto prepare(const std::string& rest, Make&& make) {
-        start_ = clock::now();
-        preparing_.emplace("preparing");
-        auto made = make();
-        const double all = since(start_);
-        preparing_.reset();
-        if (photons_traced_ > 0 && rest != "photons") { result_.phases.push_back({"photons", photons_traced_}); }
-        result_.phases.push_back({rest, rest == "photons" ? all : all - photons_traced_});
+    auto prepare(Make&& make) {
+        phase_watch watch{budget_};
+        auto made = make(aglow::preparation_progress{std::ref(watch)});
+        watch.finish(result_);
         return made;
     }
 
@@ -173,6 +170,7 @@ private:
             case view::indirect: return show("", indirect(expose("picture", integrator), maps));
             case view::beauty: break;
         }
+        end_ = end_of_picture(maps);
         const picture all = options_.until > 0 ? until(integrator) : expose("picture", integrator, true);
         result_.layers.insert(result_.layers.begin(), {"", all});
         if (!options_.layers) { return; }
@@ -180,6 +178,23 @@ private:
         if (maps) { show("caustic", caustic(maps)); }
         show("indirect", indirect(all, maps));
     }
+    /// Two pictures by path tracing that share no random number: how they differ tells how noisy they are.
+    [[nodiscard]] render_result reference() {
+        const aglow::path_tracer<World, light_set<T>> tracer{scene_, lights_};
+        std::vector<picture> halves;
+        for (const char* name : {"first half", "second half"}) {
+            end_ = budget_.spent() + (budget_.seconds() - budget_.spent()) / (halves.empty() ? 2 : 1);
+            taken_ = 0;
+            halves.push_back(expose(name, tracer));
+            ++options_.seed;
+        }
+        char text[32];
+        std::snprintf(text, sizeof text, "%.2e", difference_of_halves(halves[0], halves[1]));
+        result_.facts.push_back({"relMSE between halves", text});
+        result_.layers = {{"", std::move(halves[0])}, {second_half, std::move(halves[1])}};
+        return std::move(result_);
+    }
+
     void show(const char* name, picture image) { result_.layers.push_back({name, std::move(image)}); }
 
     /// Takes the samples that were asked for, or as many as fit into the time.
@@ -195,8 +210,8 @@ private:
                 aglow::film_options o{.samples = samples, .seed = options_.seed};
                 o.progress = [&](double share) {
                     const double more = static_cast<double>(before) + share * static_cast<double>(samples);
-                    bar.show(options_.seconds > 0 ? since(began_) / options_.seconds
-                                                  : more / static_cast<double>(wanted()));
+                    bar.show(timed() ? since(begun) / (since(begun) + std::max(0.0, end_ - budget_.spent()))
+                                     : more / static_cast<double>(wanted()));
                     return true;
                 };
                 film.expose(eye(), integrator, o, run_);
@@ -257,9 +272,9 @@ private:
         o.first_work = 4;
         o.most_work = 1 << 16;
         o.probe_work = 1 / static_cast<double>(options_.width * options_.height);
-        o.progress = [](const aglow::until_progress& p) {
+        o.progress = [this](const aglow::until_progress& p) {
             std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
-            return true;
+            return !budget_.is_over();
         };
         const aglow::until_result reached =
             with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, run_); });
@@ -269,7 +284,11 @@ private:
         if (reached.status == aglow::until_status::unreachable) {
             result_.notes.push_back("the error cannot be reached with these settings: more samples will not do");
         }
-        note(reached.certificate);
+        if (reached.status == aglow::until_status::cancelled) {
+            result_.notes.push_back("the time was over before the error could be certified");
+        } else {
+            note(reached.certificate);
+        }
         if (options_.error) { audit(film); }
         return taken_from(film, true);
     }
@@ -298,19 +317,27 @@ private:
 
     /// Layers are given as many samples as the picture got, whatever it was limited by.
     [[nodiscard]] std::uint32_t wanted() const { return taken_ > 0 ? taken_ : options_.samples; }
-    [[nodiscard]] bool timed() const { return options_.seconds > 0 && taken_ == 0; }
+    [[nodiscard]] bool timed() const { return budget_.limited() && taken_ == 0; }
 
     /// Doubles while time allows, then what fits.
     [[nodiscard]] std::uint32_t next_samples(std::uint32_t taken, double spent) const {
         if (!timed()) { return wanted(); }
         if (taken == 0) { return 1; }
-        const double left = options_.seconds - since(began_);
+        const double left = end_ - budget_.spent();
         const double fit = left * static_cast<double>(taken) / spent;
         return std::max(1u, std::min(taken, static_cast<std::uint32_t>(std::max(0.0, fit))));
     }
     [[nodiscard]] bool done(std::uint32_t taken, double spent) const {
         if (!timed()) { return true; }
-        return taken >= (1u << 24) || since(began_) + spent / static_cast<double>(taken) > options_.seconds;
+        return taken >= (1u << 24) || budget_.spent() + spent / static_cast<double>(taken) > end_;
+    }
+
+    /// When the picture must be done, in seconds since the job began: its layers, which cost as much at the most, fit
+    /// in after it.
+    [[nodiscard]] double end_of_picture(const maps_type* maps) const {
+        const double now = budget_.spent();
+        const double pictures = !options_.layers ? 1 : maps ? 4 : 2;
+        return now + std::max(0.0, budget_.seconds() - now) / pictures;
     }
 
     [[nodiscard]] const picture& direct() {
@@ -387,10 +414,8 @@ private:
     render_options options_;
     aglow::own_threads run_;
     render_result result_{};
-    clock::time_point began_{clock::now()};
-    clock::time_point start_{clock::now()};
-    std::atomic<double> photons_traced_{0};
-    std::optional<progress> preparing_{};
+    time_budget budget_;
+    double end_{options_.seconds};  ///< of the picture, in seconds since the job began
     std::uint32_t taken_{0};
     std::optional<picture> direct_{};
     std::optional<picture> caustic_{};

@@ -2,8 +2,11 @@
 
 #include <stdlib.h>  // mkdtemp
 
+#include <cmath>
 #include <fstream>
 #include <limits>
+
+#include <aglow/core/random.hpp>
 
 #include "support/catch.hpp"
 
@@ -50,6 +53,28 @@ TEST_CASE("image_io: EXR gives back every layer bit for bit") {
     CHECK(host::read_exr(file, "caustic").pixels == gradient(-2).pixels);
     CHECK(host::read_exr(file).width == 7);
     CHECK_THROWS_AS(host::read_exr(file, "glow"), std::runtime_error);
+}
+
+TEST_CASE("image_io: halves keep eleven bits in half the space") {
+    const scratch dir;
+    host::picture noise{64, 64};
+    for (std::size_t i = 0; i < noise.pixels.size(); ++i) {
+        const auto u = [i](std::uint64_t band) { return aglow::unit_interval<float>(aglow::mix(3 * i + band)); };
+        noise.pixels[i] = {u(0), 100 * u(1), 1e-3f + u(2)};
+    }
+    host::write_exr(dir.folder / "single.exr", {{"", noise}, {"b", noise}});
+    host::write_exr(dir.folder / "half.exr", {{"", noise}, {"b", noise}}, host::precision::half);
+    for (const char* name : {"", "b"}) {
+        const host::picture back = host::read_exr(dir.folder / "half.exr", name);
+        for (std::size_t i = 0; i < noise.pixels.size(); ++i) {
+            for (int band = 0; band < 3; ++band) {
+                // Half a unit of the eleventh bit; below 2^-14 halves are evenly spaced.
+                const float off = std::abs(back.pixels[i][band] - noise.pixels[i][band]);
+                CHECK(off <= std::max(noise.pixels[i][band], 0x1p-14f) * 0x1p-11f);
+            }
+        }
+    }
+    CHECK(5 * fs::file_size(dir.folder / "half.exr") < 3 * fs::file_size(dir.folder / "single.exr"));
 }
 
 TEST_CASE("image_io: what cannot be written leaves the older file whole and no part behind") {

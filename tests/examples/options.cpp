@@ -88,6 +88,8 @@ TEST_CASE("options: every wrong wish is one line that names it") {
         {complaint({"furnace", "--caustic-photons", "-1"}), "-1"},
         {complaint({"furnace", "--brightness", "2"}), "--brightness"},
         {complaint({"furnace", "another"}), "another"},
+        {complaint({"furnace", "--reference", "--method", "path"}), "--reference"},
+        {complaint({"furnace", "--reference", "--layers"}), "--reference"},
         {complaint({"furnace", "--spp"}), "--spp"},
         {complaint({}), "--list"},
     };
