@@ -30,6 +30,13 @@ public:
     [[nodiscard]] const material<T>& made_of() const { return m_; }
     [[nodiscard]] lobe_set lobes() const { return lobes_; }
 
+    /// The same with its diffuse part times `colour`, whose bands are in [0, 1].
+    [[nodiscard]] bsdf tinted(const vec3<T>& colour) const {
+        bsdf made = *this;
+        made.m_.diffuse *= colour;
+        return made;
+    }
+
     [[nodiscard]] vec3<T> emitted(const vec3<T>& normal, const vec3<T>& wo) const {
         return glm::dot(normal, wo) > 0 ? m_.radiance : vec3<T>{0};
     }

@@ -84,9 +84,13 @@ void write_exr(const std::filesystem::path& file, const std::vector<layer>& laye
         }
     }
     replace_whole(file, [&](const std::string& partial) {
-        Imf::OutputFile out{partial.c_str(), header};
-        out.setFrameBuffer(frame);
-        out.writePixels(static_cast<int>(height));
+        {
+            Imf::OutputFile out{partial.c_str(), header};
+            out.setFrameBuffer(frame);
+            out.writePixels(static_cast<int>(height));
+        }
+        // The last bytes are written when `out` goes, which cannot complain.
+        if (!Imf::InputFile{partial.c_str()}.isComplete()) { throw std::runtime_error("it was cut off; a full disk?"); }
     });
 }
 
@@ -145,9 +149,59 @@ void write_png(const std::filesystem::path& file, const picture& image, float ex
     });
 }
 
+namespace {
+
+/// What `srgb` makes of light, back again.
+float linear(std::uint8_t code) {
+    const float y = static_cast<float>(code) / 255;
+    return y <= 0.04045f ? y / 12.92f : std::pow((y + 0.055f) / 1.055f, 2.4f);
+}
+
+/// The pixels of a PNG whose head was read. Frees what libpng holds.
+picture decoded(png_image& in, bool begun, const std::string& name) {
+    std::vector<std::uint8_t> bytes;
+    if (begun) {
+        in.format = PNG_FORMAT_RGB;
+        bytes.resize(PNG_IMAGE_SIZE(in));
+        begun = png_image_finish_read(&in, nullptr, bytes.data(), 0, nullptr) != 0;
+    }
+    const std::string why = in.message;
+    png_image_free(&in);
+    if (!begun) { throw std::runtime_error("cannot read " + name + ": " + why); }
+    picture image{in.width, in.height};
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        image.pixels[i] = {linear(bytes[3 * i]), linear(bytes[3 * i + 1]), linear(bytes[3 * i + 2])};
+    }
+    return image;
+}
+
+}  // namespace
+
+picture read_png(const std::filesystem::path& file) {
+    png_image in{};
+    in.version = PNG_IMAGE_VERSION;
+    const bool begun = png_image_begin_read_from_file(&in, file.c_str()) != 0;
+    return decoded(in, begun, file.string());
+}
+
+picture read_png(std::span<const unsigned char> bytes, const std::string& name) {
+    png_image in{};
+    in.version = PNG_IMAGE_VERSION;
+    const bool begun = png_image_begin_read_from_memory(&in, bytes.data(), bytes.size()) != 0;
+    return decoded(in, begun, name);
+}
+
 #else
 
 bool has_png() { return false; }
+
+picture read_png(const std::filesystem::path& file) {
+    throw std::runtime_error("cannot read " + file.string() + ": built without libpng");
+}
+
+picture read_png(std::span<const unsigned char>, const std::string& name) {
+    throw std::runtime_error("cannot read " + name + ": built without libpng");
+}
 
 void write_png(const std::filesystem::path& file, const picture&, float) {
     throw std::runtime_error("cannot write " + file.string() + ": built without libpng");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,5 +35,9 @@ void write_exr(const std::filesystem::path& file, const std::vector<layer>& laye
 /// Writes 8 bits a channel, sRGB, after multiplying by `exposure`; what is above 1 is white. Throws
 /// `std::runtime_error`.
 void write_png(const std::filesystem::path& file, const picture& image, float exposure = 1);
+
+/// Linear RGB of a PNG file, or of one in memory. Throws `std::runtime_error` that names the file, or `name`.
+[[nodiscard]] picture read_png(const std::filesystem::path& file);
+[[nodiscard]] picture read_png(std::span<const unsigned char> bytes, const std::string& name);
 
 }  // namespace host

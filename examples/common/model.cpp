@@ -12,6 +12,8 @@
 
 #include <aglow/core/bounds.hpp>
 
+#include "common/image_io.hpp"
+
 namespace host {
 namespace {
 
@@ -100,29 +102,48 @@ material<float> converted(const aiMaterial& m) {
     return made;
 }
 
-/// The mean colour of a mesh's corners, where it has any.
-std::optional<colour> corner_colour(const aiMesh& mesh) {
-    if (!mesh.HasVertexColors(0)) { return std::nullopt; }
-    colour sum{0};
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) { sum += limited(mesh.mColors[0][i]); }
-    return sum / static_cast<float>(mesh.mNumVertices);
+/// Turns a triangle so that it faces the side of its normals: files disagree about the order of corners.
+void face_normals(std::array<std::uint32_t, 3>& t, const model::mesh& mesh) {
+    const auto& c = mesh.corners;
+    const vec3<float> face = glm::cross(c[t[1]] - c[t[0]], c[t[2]] - c[t[0]]);
+    const vec3<float> told = mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]];
+    if (glm::dot(face, told) < 0) { std::swap(t[1], t[2]); }
+}
+
+void add_corners(model::mesh& made, const aiMesh& mesh, const aiMatrix4x4& place) {
+    // Normals go by the inverse transposed, so that they stay upright on what is stretched.
+    const aiMatrix3x3 turn = aiMatrix3x3{place}.Inverse().Transpose();
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+        made.corners.push_back(point(place * mesh.mVertices[i]));
+        made.normals.push_back(mesh.HasNormals() ? point(turn * mesh.mNormals[i]) : vec3<float>{0});
+        if (mesh.HasVertexColors(0)) { made.colours.push_back(limited(mesh.mColors[0][i])); }
+        if (mesh.HasTextureCoords(0)) {
+            made.places.push_back({mesh.mTextureCoords[0][i].x, mesh.mTextureCoords[0][i].y});
+        }
+    }
+}
+
+/// The material of a mesh that brings its own colours: white below them, but for what a clean surface swallows.
+std::size_t whitened(model& into, std::size_t material) {
+    host::material<float> own = into.materials[material];
+    own.diffuse = colour{0.9f};
+    make_possible(own);
+    into.materials.push_back(own);
+    into.textures.push_back(into.textures[material]);
+    return into.materials.size() - 1;
 }
 
 void add_mesh(model& into, const aiMesh& mesh, const aiMatrix4x4& place) {
     model::mesh made{.material = mesh.mMaterialIndex};
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) { made.corners.push_back(point(place * mesh.mVertices[i])); }
+    add_corners(made, mesh, place);
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
         const aiFace& f = mesh.mFaces[i];
-        if (f.mNumIndices == 3) { made.triangles.push_back({f.mIndices[0], f.mIndices[1], f.mIndices[2]}); }
+        if (f.mNumIndices != 3) { continue; }
+        made.triangles.push_back({f.mIndices[0], f.mIndices[1], f.mIndices[2]});
+        face_normals(made.triangles.back(), made);
     }
     if (made.triangles.empty()) { return; }
-    if (const auto mean = corner_colour(mesh)) {
-        material<float> own = into.materials[mesh.mMaterialIndex];
-        own.diffuse = *mean * 0.9f;
-        make_possible(own);
-        made.material = into.materials.size();
-        into.materials.push_back(own);
-    }
+    if (!made.colours.empty()) { made.material = whitened(into, made.material); }
     into.meshes.push_back(std::move(made));
 }
 
@@ -176,11 +197,26 @@ std::optional<camera<float>> first_camera(const aiScene& scene) {
                          .tangent = half_tangent(c)};
 }
 
-bool has_textures(const aiScene& scene) {
+/// The picture that a material's diffuse part is multiplied by: a PNG beside the model, or within it.
+picture texture_of(const aiScene& scene, const aiMaterial& m, const std::filesystem::path& folder) {
+    aiString name;
+    if (m.GetTexture(aiTextureType_DIFFUSE, 0, &name) != aiReturn_SUCCESS) { return {}; }
+    const aiTexture* within = scene.GetEmbeddedTexture(name.C_Str());
+    if (!within) { return read_png(folder / name.C_Str()); }
+    // Compressed bytes have a width alone.
+    if (within->mHeight != 0) { throw std::runtime_error("a texture within the file is not compressed"); }
+    const auto* bytes = reinterpret_cast<const unsigned char*>(within->pcData);
+    return read_png({bytes, within->mWidth}, std::string{"the texture "} + name.C_Str());
+}
+
+void add_materials(model& into, const aiScene& scene, const std::filesystem::path& folder) {
     for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
-        if (scene.mMaterials[i]->GetTextureCount(aiTextureType_DIFFUSE) > 0) { return true; }
+        into.materials.push_back(converted(*scene.mMaterials[i]));
+        into.textures.emplace_back();
+        try {
+            into.textures.back() = texture_of(scene, *scene.mMaterials[i], folder);
+        } catch (const std::runtime_error& e) { into.notes.push_back(std::string{"texture left out: "} + e.what()); }
     }
-    return false;
 }
 
 }  // namespace
@@ -189,19 +225,21 @@ model read_model(const std::filesystem::path& file) {
     Assimp::Importer importer;
     // Points and lines are no surfaces.
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    // Where a file has no normals, edges of more than 40 degrees stay edges.
+    importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40);
     const aiScene* scene =
-        importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType |
+        importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
                                              aiProcess_JoinIdenticalVertices | aiProcess_FindDegenerates);
     if (!scene || !scene->mRootNode) {
-        throw std::runtime_error("cannot read " + file.string() + ": " + importer.GetErrorString());
+        const std::string why = importer.GetErrorString();
+        throw std::runtime_error("cannot read " + file.string() + ": " + why.substr(0, why.find('\n')));
     }
     model made;
-    for (unsigned i = 0; i < scene->mNumMaterials; ++i) { made.materials.push_back(converted(*scene->mMaterials[i])); }
+    add_materials(made, *scene, file.parent_path());
     add_node(made, *scene, *scene->mRootNode, aiMatrix4x4{});
     if (made.meshes.empty()) { throw std::runtime_error("cannot read " + file.string() + ": no triangles in it"); }
     add_lights(made, *scene);
     made.camera = first_camera(*scene);
-    if (has_textures(*scene)) { made.notes.push_back("textures: left out, each material has one colour"); }
     return made;
 }
 

@@ -10,15 +10,22 @@
 
 #include "common/camera.hpp"
 #include "common/material.hpp"
+#include "common/picture.hpp"
 
 namespace host {
 
-/// What a file holds, in its own unit of length. Textures are not read: a material has one colour.
+/// What a file holds, in its own unit of length.
 struct model {
+    /// Triangles whose corners turn left on the side that their normals are on.
     struct mesh {
         std::vector<vec3<float>> corners{};
         std::vector<std::array<std::uint32_t, 3>> triangles{};
         std::size_t material{0};
+        /// Of each corner: the shading normal, and, empty where the file has none, its colour and place in the
+        /// material's texture.
+        std::vector<vec3<float>> normals{};
+        std::vector<vec3<float>> colours{};
+        std::vector<vec2<float>> places{};
     };
     struct lamp {
         vec3<float> position{};
@@ -26,6 +33,8 @@ struct model {
     };
 
     std::vector<host::material<float>> materials{};
+    /// Of each material, what its diffuse part is multiplied by over the surface; an empty picture for none.
+    std::vector<picture> textures{};
     std::vector<mesh> meshes{};
     std::vector<lamp> lamps{};
     /// The file's first camera; empty where it has none.

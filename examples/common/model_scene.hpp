@@ -9,30 +9,35 @@
 #include "common/camera.hpp"
 #include "common/light_set.hpp"
 #include "common/model.hpp"
+#include "common/shaded_hit.hpp"
+#include "common/texture.hpp"
 #include "embree/embree_scene.hpp"
 
 namespace host {
 
-/// Finds the material of what Embree hit. Triangles are numbered through all meshes, for the lights.
+/// Makes a surface of what Embree hit: the material there, its colour, and the normal it is shaded by. Triangles are
+/// numbered through all meshes, for the lights.
 class model_shade {
 public:
-    explicit model_shade(const model& m) {
+    explicit model_shade(const model& m) : textures_{m.textures} {
         for (const material<float>& made_of : m.materials) { bsdfs_.emplace_back(made_of); }
         std::uint32_t triangles = 0;
         for (const model::mesh& mesh : m.meshes) {
-            meshes_.push_back({mesh.material, triangles});
+            meshes_.push_back({mesh, triangles});
             triangles += static_cast<std::uint32_t>(mesh.triangles.size());
         }
     }
 
-    [[nodiscard]] surface_hit<float> operator()(const embree_hit& h) const {
-        const part& mesh = meshes_[h.mesh];
+    [[nodiscard]] shaded_hit<float> operator()(const embree_hit& h) const {
+        const part& p = meshes_[h.mesh];
+        const auto told = between(p.mesh.normals, p.mesh.triangles[h.triangle], h);
         return {.position = h.position,
                 .normal = h.normal,
+                .shading = shading_normal(told, h.normal, -h.direction),
                 .position_error = h.position_error,
                 .distance = h.distance,
-                .scatterer = &bsdfs_[mesh.material],
-                .primitive = mesh.first + h.triangle};
+                .scatterer = scatterer(p.mesh, h),
+                .primitive = p.first + h.triangle};
     }
 
     [[nodiscard]] lobe_set lobes() const {
@@ -43,10 +48,30 @@ public:
 
 private:
     struct part {
-        std::size_t material;
+        model::mesh mesh;
         std::uint32_t first;
     };
+
+    /// What belongs to the corners, where the ray met the triangle.
+    template <typename V>
+    static V between(const std::vector<V>& of, const std::array<std::uint32_t, 3>& t, const embree_hit& h) {
+        return of[t[0]] * (1 - h.u - h.v) + of[t[1]] * h.u + of[t[2]] * h.v;
+    }
+
+    [[nodiscard]] bsdf<float> scatterer(const model::mesh& mesh, const embree_hit& h) const {
+        const auto& corners = mesh.triangles[h.triangle];
+        const picture& texture = textures_[mesh.material];
+        vec3<float> colour{1};
+        if (!mesh.colours.empty()) { colour = between(mesh.colours, corners, h); }
+        if (!mesh.places.empty() && !texture.pixels.empty()) {
+            const vec2<float> at = between(mesh.places, corners, h);
+            colour *= texture_colour(texture, at.x, at.y);
+        }
+        return bsdfs_[mesh.material].tinted(glm::clamp(colour, 0.0f, 1.0f));
+    }
+
     std::vector<bsdf<float>> bsdfs_{};
+    std::vector<picture> textures_{};
     std::vector<part> meshes_{};
 };
 

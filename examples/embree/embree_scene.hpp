@@ -31,10 +31,11 @@ struct embree_hit {
     aglow::vec3<float> normal{};  ///< unit, geometric: the side from which the corners turn left
     float position_error{};       ///< how far `position` may lie from the triangle
     float distance{};
-    std::uint32_t mesh{};      ///< as `add_mesh` numbered it
-    std::uint32_t triangle{};  ///< within the mesh
-    float u{};                 ///< weight of the second corner
-    float v{};                 ///< weight of the third
+    std::uint32_t mesh{};            ///< as `add_mesh` numbered it
+    std::uint32_t triangle{};        ///< within the mesh
+    float u{};                       ///< weight of the second corner
+    float v{};                       ///< weight of the third
+    aglow::vec3<float> direction{};  ///< of the ray
 };
 
 /// The library's `Intersector`, and its `Scene` where `Shade` makes surfaces. `shade(const embree_hit&)` turns what was
@@ -96,8 +97,8 @@ public:
 #endif
         if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) { return std::nullopt; }
         const aglow::vec3<float> normal = glm::normalize(aglow::vec3<float>{q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z});
-        return shade_(
-            embree_hit{position(q.hit), normal, error_, q.ray.tfar, q.hit.geomID, q.hit.primID, q.hit.u, q.hit.v});
+        return shade_(embree_hit{position(q.hit), normal, error_, q.ray.tfar, q.hit.geomID, q.hit.primID, q.hit.u,
+                                 q.hit.v, r.direction});
     }
 
     [[nodiscard]] bool occluded(const aglow::vec3<float>& a, const aglow::vec3<float>& b) const {
