@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <aglow/estimators/density.hpp>
+
 #include "render/usage_error.hpp"
 
 namespace host {
@@ -67,13 +69,65 @@ CLI::Validator between(double low, double high) {
         why << text << " is not a number from " << low << " to " << high;
         return why.str();
     };
-    return {refuse, "NUMBER"};
+    return {refuse, ""};
 }
 
 /// The first line of what CLI11 complains of.
 std::string one_line(std::string text) {
     const std::size_t end = text.find('\n');
     return end == std::string::npos ? text : text.substr(0, end);
+}
+
+void add_picture(CLI::App& app, render_options& o, std::string& size) {
+    app.add_option("SCENE", o.scene, "a built-in scene (see --list) or a model file (OBJ, glTF 2, PLY)")->type_name("");
+    app.add_flag("--list", o.list, "list the built-in scenes");
+    const auto add = [&app](const char* name, auto& into, const char* type, const char* what) {
+        return app.add_option(name, into, what)->type_name(type)->group("The picture");
+    };
+    add("--output", o.output, "FILE", "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
+    add("--size", size, "WxH", "width x height in pixels [256x256]");
+    add("--spp", o.samples, "N", "samples per pixel [16]")->check(between(1, 1 << 24));
+    add("--time", o.seconds, "SECONDS", "as many samples as fit into so many seconds, preparation included")
+        ->check(between(0.01, 1e7));
+    add("--seed", o.seed, "N", "another seed, other noise [0]")->check(between(0, 0x1p64));
+    add("--threads", o.threads, "N", "threads; the picture does not depend on them [all cores]")
+        ->check(between(1, 1024));
+    add("--exposure", o.exposure, "FACTOR", "of the PNG [1]")->check(between(1e-6, 1e6));
+}
+
+void add_method(CLI::App& app, render_options& o, std::string& how) {
+    const auto add = [&app](const char* name, auto& into, const char* type, const std::string& what) {
+        return app.add_option(name, into, what)->type_name(type)->group("How it is made");
+    };
+    add("--method", how, "NAME", "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
+    add("--caustic-photons", o.caustic_photons, "N", "wanted over mirrors and glass [200000]")->check(between(0, 4e9));
+    add("--indirect-photons", o.indirect_photons, "N", "wanted after a matte bounce [100000; photon-map 200000]")
+        ->check(between(0, 4e9));
+    add("--direct-photons", o.direct_photons, "N", "wanted straight from the lights [20000; photon-map 0]")
+        ->check(between(0, 4e9));
+    add("--estimate", o.photons_per_estimate, "N",
+        "photons per estimate [" + std::to_string(aglow::density_options{}.count) + "]")
+        ->check(between(2, 100000));
+    add("--gather-rays", o.gather_rays, "N", "rays of each cache record [400] or final gather [64]")
+        ->check(between(1, 1 << 20));
+    add("--accuracy", o.accuracy, "X", "of the irradiance cache: smaller is finer")->check(between(1e-4, 10.0));
+}
+
+void add_questions(CLI::App& app, render_options& o, std::string& show, std::string& until) {
+    const char* group = "What it is made of, and how wrong it is";
+    app.add_option("--view", show, "beauty, direct, indirect, caustic, records or photons [beauty]")
+        ->type_name("NAME")
+        ->group(group);
+    app.add_flag("--layers", o.layers, "also direct, indirect and caustic light, as layers of the EXR")->group(group);
+    app.add_flag("--error", o.error, "audit the picture: error bars as a layer, and as a heat map beside it")
+        ->group(group);
+    app.add_option("--until", until, "render on until an audit certifies this mean relative error, such as 5%")
+        ->type_name("ERROR")
+        ->group(group);
+    app.add_flag("--reference", o.reference,
+                 "two pictures by path tracing, --spp samples each, of independent noise: the EXR's own and its layer "
+                 "`second`, in half floats")
+        ->group(group);
 }
 
 }  // namespace
@@ -92,33 +146,18 @@ std::optional<render_options> read_options(int count, const char* const* words) 
     std::string size;
     std::string until;
     CLI::App app{"Renders a picture of a built-in scene or of a model file.", "render"};
-    app.add_option("SCENE", o.scene, "a built-in scene (see --list) or a model file (OBJ, glTF 2, PLY)");
-    app.add_option("--method", how, "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
-    app.add_option("--output", o.output, "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
-    app.add_option("--spp", o.samples, "samples per pixel [16]")->check(between(1, 1 << 24));
-    app.add_option("--time", o.seconds,
-                   "seconds in all, preparation included: as many samples as fit, instead of --spp")
-        ->check(between(0.01, 1e7));
-    app.add_option("--threads", o.threads, "threads; the picture does not depend on them [all cores]")
-        ->check(between(1, 1024));
-    app.add_option("--seed", o.seed, "another seed, other noise [0]")->check(between(0, 0x1p64));
-    app.add_option("--size", size, "width x height in pixels [256x256]");
-    app.add_option("--caustic-photons", o.caustic_photons, "photons wanted in the caustic map")->check(between(0, 4e9));
-    app.add_option("--indirect-photons", o.indirect_photons, "photons wanted in the indirect map")
-        ->check(between(0, 4e9));
-    app.add_option("--direct-photons", o.direct_photons, "photons wanted in the direct map")->check(between(0, 4e9));
-    app.add_option("--estimate", o.photons_per_estimate, "photons per estimate")->check(between(2, 100000));
-    app.add_option("--gather-rays", o.gather_rays, "rays of each final gather or cache record")
-        ->check(between(1, 1 << 20));
-    app.add_option("--accuracy", o.accuracy, "of the irradiance cache: smaller is finer")->check(between(1e-4, 10.0));
-    app.add_option("--view", show, "beauty, direct, indirect, caustic, records or photons [beauty]");
-    app.add_flag("--layers", o.layers, "also write direct, indirect and caustic light as layers");
-    app.add_option("--exposure", o.exposure, "of the PNG: a factor [1]")->check(between(1e-6, 1e6));
-    app.add_option("--until", until, "render on until an audit certifies this mean relative error, such as 5%");
-    app.add_flag("--error", o.error, "audit the picture; error bars as a layer and a heat map beside the picture");
-    app.add_flag("--reference", o.reference,
-                 "path tracing in two independent halves of --spp samples each, in one file of half floats");
-    app.add_flag("--list", o.list, "list the built-in scenes");
+    app.footer(
+        R"(Without options: the classical combination at 256x256, 16 samples a pixel, into SCENE.exr and SCENE.png.
+
+  render cornell-glass --spp 64 --output glass.exr
+  render cornell-diffuse --method path --time 10
+  render cornell-diffuse --until 5% --error
+  render model.glb --size 640x480 --exposure 2
+
+Status 0: a picture was written. 1: it failed on the way. 2: the wish makes no sense, or the file cannot be read.)");
+    add_picture(app, o, size);
+    add_method(app, o, how);
+    add_questions(app, o, show, until);
     try {
         app.parse(count, words);
     } catch (const CLI::CallForHelp&) {

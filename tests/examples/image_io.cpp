@@ -91,6 +91,41 @@ TEST_CASE("image_io: what cannot be written leaves the older file whole and no p
     CHECK(names(complaint([&] { host::write_exr(there, {{"", gradient(1)}}); }), there));
 }
 
+TEST_CASE("image_io: a full disk cuts off no picture that was whole") {
+    const scratch dir;
+    const fs::path full = "/dev/full";  // takes nothing
+    if (!fs::exists(full)) { return; }
+    const auto exr = dir.folder / "good.exr";
+    host::write_exr(exr, {{"", gradient(1)}});
+    fs::create_symlink(full, exr.string() + ".part");
+    CHECK(names(complaint([&] { host::write_exr(exr, {{"", gradient(2)}}); }), exr));
+    CHECK(host::read_exr(exr).pixels == gradient(1).pixels);
+    if (!host::has_png()) { return; }
+    const auto png = dir.folder / "good.png";
+    host::write_png(png, gradient(0.1f));
+    const auto before = host::read_png(png).pixels;
+    fs::create_symlink(full, png.string() + ".part");
+    CHECK(names(complaint([&] { host::write_png(png, gradient(0.3f)); }), png));
+    CHECK(host::read_png(png).pixels == before);
+}
+
+TEST_CASE("image_io: PNG comes back as light, to its eight bits") {
+    if (!host::has_png()) { return; }
+    const scratch dir;
+    host::picture ramp{256, 1};
+    for (std::size_t i = 0; i < 256; ++i) { ramp.at(i, 0) = glm::vec3{float(i) / 255, 1 - float(i) / 255, 0.5f}; }
+    host::write_png(dir.folder / "ramp.png", ramp);
+    const host::picture back = host::read_png(dir.folder / "ramp.png");
+    REQUIRE(back.width == 256);
+    for (std::size_t i = 0; i < 256; ++i) {
+        // Half a step of sRGB; it is steepest at white: 2.4 / 1.055 / 255 / 2.
+        for (int band = 0; band < 3; ++band) { CHECK(std::abs(back.at(i, 0)[band] - ramp.at(i, 0)[band]) < 0.0046f); }
+    }
+    std::ofstream{dir.folder / "text.png"} << "not a picture";
+    CHECK(
+        names(complaint([&] { static_cast<void>(host::read_png(dir.folder / "text.png")); }), dir.folder / "text.png"));
+}
+
 TEST_CASE("image_io: a file that is no picture is refused by name") {
     const scratch dir;
     const auto file = dir.folder / "text.exr";
