@@ -2,6 +2,9 @@
 // CPU time, medians; every answer of a sample is compared with brute force.
 //
 //     rivals [--smoke] [--count 1000000] [--queries 20000] [--repeats 5] [--sets ABRCD] [--csv rivals.csv]
+//            [--only build,random,coherent] [--append]
+//
+// With --append a long contest can be held in parts: the rows are added to those that the file has.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -29,6 +32,10 @@ struct settings {
     int repeats = 5;
     std::string sets = "ABRCD";
     std::string csv;
+    std::string only = "build,random,coherent";
+    bool append = false;
+
+    [[nodiscard]] bool wants(const std::string& part) const { return only.find(part) != std::string::npos; }
 };
 
 /// One question in one order on one set: what each contender took for it.
@@ -48,6 +55,12 @@ class contest {
 public:
     explicit contest(settings what) : settings_{std::move(what)} {
         add_aglow(all_);
+#ifdef RIVALS_AVX2
+        if (__builtin_cpu_supports("avx2")) { add_aglow_avx2(all_); }
+#endif
+#ifdef RIVALS_SSE
+        add_aglow_sse(all_);
+#endif
 #ifdef RIVALS_NANOFLANN
         add_nanoflann(all_);
 #endif
@@ -79,6 +92,7 @@ private:
         build(set, photons);
         constexpr std::size_t checks = 4;
         for (const bool coherent : {false, true}) {
+            if (!settings_.wants(coherent ? "coherent" : "random")) { continue; }
             const auto queries = questions(set, 1'000'000, settings_.queries, coherent);
             const std::string order = coherent ? "coherent" : "random";
             for (const std::size_t k : {std::size_t{1}, std::size_t{8}, std::size_t{50}, std::size_t{200}}) {
@@ -103,7 +117,8 @@ private:
     void build(char set, const std::vector<photon>& photons) {
         row builds{set, "build", "", {}};
         std::map<std::string, std::vector<double>> seconds;
-        for (int i = 0; i < (settings_.repeats + 1) / 2; ++i) {
+        const int rounds = settings_.wants("build") ? (settings_.repeats + 1) / 2 : 1;
+        for (int i = 0; i < rounds; ++i) {
             for (auto& c : all_) {
                 if (c->borrows()) { continue; }
                 const double start = cpu_seconds();
@@ -119,6 +134,7 @@ private:
             own("aglow, index only", timed_threads{1});
             own("aglow, index only, 2 threads", timed_threads{2});
         }
+        if (!settings_.wants("build")) { return; }
         for (auto& [name, values] : seconds) { builds.seconds[name] = median(values); }
         report(builds, 1);
         std::printf("  bytes a photon:");
@@ -233,9 +249,9 @@ private:
     }
 
     void write_csv() const {
-        std::FILE* file = std::fopen(settings_.csv.c_str(), "w");
-        if (file == nullptr) { return; }
-        std::fprintf(file, "set,count,question,order,contender,seconds\n");
+        std::FILE* file = std::fopen(settings_.csv.c_str(), settings_.append ? "a" : "w");
+        if (file == nullptr) { throw std::runtime_error("rivals: cannot write " + settings_.csv); }
+        if (std::ftell(file) == 0) { std::fprintf(file, "set,count,question,order,contender,seconds\n"); }
         for (const row& r : rows_) {
             for (auto& [name, seconds] : r.seconds) {
                 std::fprintf(file, "%c,%zu,%s,%s,\"%s\",%.4g\n", r.set, settings_.count, r.what.c_str(),
@@ -263,6 +279,10 @@ settings parse(int count, char** words) {
             s.repeats = 1;
             continue;
         }
+        if (word == "--append") {
+            s.append = true;
+            continue;
+        }
         if (i + 1 == count) { throw std::invalid_argument("rivals: no value for " + word); }
         const std::string value = words[++i];
         if (word == "--count") {
@@ -275,6 +295,8 @@ settings parse(int count, char** words) {
             s.sets = value;
         } else if (word == "--csv") {
             s.csv = value;
+        } else if (word == "--only") {
+            s.only = value;
         } else {
             throw std::invalid_argument("rivals: unknown option " + word);
         }

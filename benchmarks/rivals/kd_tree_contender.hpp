@@ -60,6 +60,8 @@ public:
 using contenders = std::vector<std::unique_ptr<contender>>;
 
 void add_aglow(contenders& all);
+void add_aglow_avx2(contenders& all);
+void add_aglow_sse(contenders& all);
 void add_nanoflann(contenders& all);
 void add_flann(contenders& all);
 void add_cgal(contenders& all);
