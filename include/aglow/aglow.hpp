@@ -3,6 +3,7 @@
 
 // core: numbers and shapes
 #include <aglow/core/bounds.hpp>
+#include <aglow/core/callback.hpp>
 #include <aglow/core/frame.hpp>
 #include <aglow/core/halton.hpp>
 #include <aglow/core/numbers.hpp>

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include <aglow/concepts/light.hpp>
+#include <aglow/core/callback.hpp>
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/estimators/estimate.hpp>
@@ -23,7 +23,7 @@ struct film_options {
     std::uint64_t pass{0};
     bool fresh{false};  ///< the integrator's maps are new ones: what its samples have in common is not what earlier
                         ///< ones had, and the spread of samples tells all noise
-    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
+    callback<double> progress{};  ///< told the share done, from any thread; false stops early
 };
 
 /// How far the mean of a whole picture may be off, W/(m² sr): its pixels' errors do not average out where they have

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include <aglow/algorithms/energy_ledger.hpp>
+#include <aglow/core/callback.hpp>
 #include <aglow/estimators/photon_map.hpp>
 
 namespace aglow {
@@ -22,20 +22,20 @@ struct photon_paths {
 
 /// How many photons, and how.
 struct photon_options {
-    std::size_t direct{0};                   ///< photons wanted straight from the lights; 0 leaves the map out
-    std::size_t caustic{0};                  ///< wanted over specular surfaces only; 0 leaves the map out, and such
-                                             ///< photons are among the indirect ones
-    std::size_t indirect{0};                 ///< wanted after a diffuse or glossy bounce; 0 leaves the map out
-    std::size_t reflected{0};                ///< wanted of the indirect ones that were a caustic before their only such
-                                             ///< bounce, in a map of their own as well; needs a caustic map
-    std::size_t most_paths{16'000'000};      ///< paths emitted at the most, whatever is still wanted, the pilot apart
-    std::size_t pilot_paths{8192};           ///< paths of the pilot that finds out how many are needed
-    photon_paths paths{};                    ///< of each map, where known from an earlier pass; 0: the pilot finds out
-    std::uint32_t most_bounces{0};           ///< depth cap; 0 for none: roulette ends paths without bias. Where half of
-                                             ///< the pilot's paths meet 4096 surfaces, that is the cap: `capped` tells
-    std::uint64_t seed{0};                   ///< another seed, another picture
-    std::uint64_t pass{0};                   ///< of a progressive rendering
-    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
+    std::size_t direct{0};               ///< photons wanted straight from the lights; 0 leaves the map out
+    std::size_t caustic{0};              ///< wanted over specular surfaces only; 0 leaves the map out, and such
+                                         ///< photons are among the indirect ones
+    std::size_t indirect{0};             ///< wanted after a diffuse or glossy bounce; 0 leaves the map out
+    std::size_t reflected{0};            ///< wanted of the indirect ones that were a caustic before their only such
+                                         ///< bounce, in a map of their own as well; needs a caustic map
+    std::size_t most_paths{16'000'000};  ///< paths emitted at the most, whatever is still wanted, the pilot apart
+    std::size_t pilot_paths{8192};       ///< paths of the pilot that finds out how many are needed
+    photon_paths paths{};                ///< of each map, where known from an earlier pass; 0: the pilot finds out
+    std::uint32_t most_bounces{0};       ///< depth cap; 0 for none: roulette ends paths without bias. Where half of
+                                         ///< the pilot's paths meet 4096 surfaces, that is the cap: `capped` tells
+    std::uint64_t seed{0};               ///< another seed, another picture
+    std::uint64_t pass{0};               ///< of a progressive rendering
+    callback<double> progress{};         ///< told the share done, from any thread; false stops early
 };
 
 /// How a photon map came out.

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <ranges>
@@ -53,6 +52,20 @@ template <typename T>
     return std::max({magnitude(p.x), magnitude(p.y), magnitude(p.z)}) <= farthest;
 }
 
+/// `std::invoke(position, item)`.
+template <typename T, typename Position, typename Item>
+[[nodiscard]] vec3<T> place_of(const Position& position, Item&& item) {
+    if constexpr (requires { position(item); }) {
+        return position(item);
+    } else if constexpr (requires { (item.*position)(); }) {
+        return (item.*position)();
+    } else if constexpr (requires { item.*position; }) {
+        return item.*position;
+    } else {
+        return place_of<T>(position, *item);
+    }
+}
+
 /// Takes the usable positions of items [first, last) to the places from `first` on; returns how many.
 template <typename T, typename Items, typename Position>
 std::size_t take_block(kd_cloud<T>& cloud, const Items& items, const Position& position, std::size_t first,
@@ -64,7 +77,7 @@ std::size_t take_block(kd_cloud<T>& cloud, const Items& items, const Position& p
     const auto item = std::ranges::begin(items);
     std::size_t to = first;
     for (std::size_t i = first; i < last; ++i) {
-        const vec3<T> p = std::invoke(position, item[static_cast<std::ranges::range_difference_t<const Items>>(i)]);
+        const vec3<T> p = place_of<T>(position, item[static_cast<std::ranges::range_difference_t<const Items>>(i)]);
         x[to] = p.x;
         y[to] = p.y;
         z[to] = p.z;

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -203,14 +202,17 @@ private:
     [[nodiscard]] std::vector<std::size_t> pixels_of_rare_classes() const {
         std::vector<std::size_t> pixels;
         if (picture_.classes.empty()) { return pixels; }
-        std::map<std::uint32_t, std::size_t> hits;
-        for (std::size_t i = 0; i < uniform_; ++i) { ++hits[picture_.classes[records_[i].pixel]]; }
-        std::map<std::uint32_t, std::vector<std::size_t>> members;
+        std::vector<class_list> hits;
+        for (std::size_t i = 0; i < uniform_; ++i) {
+            members_of(hits, picture_.classes[records_[i].pixel]).push_back(i);
+        }
+        std::vector<class_list> members;
         for (std::size_t i = 0; i < picture_.classes.size(); ++i) {
-            if (hits[picture_.classes[i]] < options_.class_probes) { members[picture_.classes[i]].push_back(i); }
+            const std::uint32_t id = picture_.classes[i];
+            if (members_of(hits, id).size() < options_.class_probes) { members_of(members, id).push_back(i); }
         }
         for (const auto& [id, own] : members) {
-            for (std::size_t k = hits[id]; k < options_.class_probes; ++k) {
+            for (std::size_t k = members_of(hits, id).size(); k < options_.class_probes; ++k) {
                 pixels.push_back(own[drawn(part_extra, pixels.size(), own.size())]);
             }
         }

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,12 +33,25 @@ struct class_scale {
     bool merged{false};     ///< too few of its own, so all classes' scores were taken together
 };
 
+/// The members of a class, by index.
+struct class_list {
+    std::uint32_t id;
+    std::vector<std::size_t> members;
+};
+
+/// The members of class `id` in lists by rising id; an empty list is put in where there is none.
+[[nodiscard]] inline std::vector<std::size_t>& members_of(std::vector<class_list>& lists, std::uint32_t id) {
+    auto at = std::lower_bound(lists.begin(), lists.end(), id, [](const class_list& l, auto i) { return l.id < i; });
+    if (at == lists.end() || at->id != id) { at = lists.insert(at, {id, {}}); }
+    return at->members;
+}
+
 /// Puts each index of `classes` into the list of its class; classes of fewer than `least` share one list of everything.
 class class_lists {
 public:
     class_lists(std::span<const std::uint32_t> classes, std::size_t least) {
         for (std::size_t i = 0; i < classes.size(); ++i) {
-            own_[classes[i]].push_back(i);
+            members_of(own_, classes[i]).push_back(i);
             everything_.push_back(i);
         }
         for (const auto& [id, members] : own_) {
@@ -57,7 +69,7 @@ public:
     }
 
 private:
-    std::map<std::uint32_t, std::vector<std::size_t>> own_{};
+    std::vector<class_list> own_{};
     std::vector<std::size_t> everything_{};
     std::vector<std::uint32_t> merged_{};
 };

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <aglow/core/callback.hpp>
 #include <aglow/core/random.hpp>
 #include <aglow/report/audit.hpp>
 #include <aglow/report/decay.hpp>
@@ -55,7 +55,7 @@ struct render_until_options {
     double probe_work = 0;
     double probe_share = 0.05;
     /// Called after every look; returning false ends the work.
-    std::function<bool(const until_progress&)> progress{};
+    callback<const until_progress&> progress{};
 };
 
 enum class until_status { reached, unreachable, out_of_work, cancelled, broken };

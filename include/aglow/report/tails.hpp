@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -20,7 +19,7 @@ namespace aglow {
         if (x != 0) { sizes.push_back(std::abs(x)); }
     }
     if (top == 0 || sizes.size() <= top) { return 0; }
-    std::sort(sizes.begin(), sizes.end(), std::greater<>{});
+    std::sort(sizes.begin(), sizes.end(), [](double a, double b) { return a > b; });
     double logs = 0;
     for (std::size_t i = 0; i < top; ++i) { logs += std::log(sizes[i] / sizes[top]); }
     return logs / static_cast<double>(top);
