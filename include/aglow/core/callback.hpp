@@ -1,4 +1,4 @@
-// A question that a host may answer or leave open, as progress is: `std::function` at a fifth of its header's cost.
+// A question that a host may answer or leave open, as progress is: `std::function` without its header.
 #pragma once
 
 #include <concepts>
