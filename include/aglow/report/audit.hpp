@@ -28,11 +28,11 @@ namespace detail {
 
 /// Σ(B−I)/ΣI by the difference estimator: what the probes say of B−I against the picture's known mean. The miss
 /// probability is taken one fifth smaller than asked for: with as few probes, intervals of skewed gaps hold about a
-/// point too seldom.
-[[nodiscard]] inline interval energy_bias(std::span<const double> gaps, double mean, double confidence) {
+/// point too seldom. `unmet` is added on either side.
+[[nodiscard]] inline interval energy_bias(std::span<const double> gaps, double mean, double confidence, double unmet) {
     const interval gap = cautious_interval(gaps, 1 - 0.8 * (1 - confidence));
     const auto relative = [&](double d) { return d < mean ? d / (mean - d) : std::numeric_limits<double>::infinity(); };
-    return {relative(gap.estimate), relative(gap.low), relative(gap.high)};
+    return {relative(gap.estimate), relative(gap.low - unmet), relative(gap.high + unmet)};
 }
 
 inline void add_reason(audit_result& result, bool holds, const char* words) {
@@ -40,16 +40,15 @@ inline void add_reason(audit_result& result, bool holds, const char* words) {
 }
 
 /// Signs that the probes themselves cannot be trusted.
-inline void find_doubts(audit_result& result) {
+inline void find_doubts(audit_result& result, bool heavy_tailed) {
     add_reason(result, result.broken_samples > 0, "a probe returned infinity or NaN");
-    add_reason(result, result.tail_index > 0.6,
-               "heavy tails: the probes' noise does not fall as that of a finite variance");
+    add_reason(result, heavy_tailed, "heavy tails: the probes' noise does not fall as that of a finite variance");
     add_reason(result, result.largest_share > 0.2,
                "heavy tails: a single probe makes up more than a fifth of the error");
 }
 
-inline void judge(audit_result& result, const audit_options& options) {
-    find_doubts(result);
+inline void judge(audit_result& result, const audit_options& options, bool heavy_tailed) {
+    find_doubts(result, heavy_tailed);
     const bool doubtful = !result.reasons.empty();
     const double bound = options.distribution_free ? result.clipped_error_bound : result.mean_error_bound;
     const bool small = bound <= options.target;
@@ -85,13 +84,18 @@ void state(audit_result& result, const audit_sample<T>& sample, const audit_opti
     const running_mean all = mean_of(errors);
     result.mean_error = all.mean();
     result.mean_error_deviation = all.deviation();
-    result.mean_error_bound = skewed_upper_bound(errors, options.confidence);
-    result.mean_error_floor =
-        all.mean() -
-        student_t_quantile(options.confidence, static_cast<double>(all.count() - 1)) * all.standard_error();
+    const bool bounded = !sample.heavy_tailed();
+    result.unmet_error = bounded ? sample.unmet_error(options.confidence) : 0;
+    result.mean_error_bound = skewed_upper_bound(errors, options.confidence) + result.unmet_error;
+    const double own = mean_of(sample.noises()).mean();
+    const double t = student_t_quantile(options.confidence, static_cast<double>(all.count() - 1));
+    result.mean_error_floor = all.mean() - t * all.standard_error();
+    // Noise of about twice what was planned is still in `mean_error`, by up to half of its size.
+    if (own > 1.5 * options.noise * options.target) { result.mean_error_floor -= 0.5 * own; }
     result.clipped_error_bound = betting_upper_bound(clipped(plain), options.confidence);
     result.quantile_bound = quantile_upper_bound(plain, options.quantile, options.confidence);
-    result.energy_bias = energy_bias(sample.gaps(), sample.mean(), options.confidence);
+    result.energy_bias = energy_bias(sample.gaps(), sample.mean(), options.confidence,
+                                     bounded ? sample.unmet_gap(options.confidence) : 0);
     result.scales = sample.scales(options.confidence);
     result.tail_index = sample.tail_index();
     const double sum = static_cast<double>(errors.size()) * std::max(options.target, mean_of(plain).mean());
@@ -119,7 +123,7 @@ template <std::floating_point T, Probe P, Executor E = in_sequence>
     result.samples = sample.samples();
     result.broken_samples = sample.broken();
     detail::state(result, sample, options);
-    detail::judge(result, options);
+    detail::judge(result, options, sample.heavy_tailed());
     return result;
 }
 

@@ -53,6 +53,13 @@ struct audit_options {
     double noise = 0.5;
     /// Most samples that all probes together may take; fewer than wanted make the bounds wider, never wrong.
     std::size_t budget = std::numeric_limits<std::size_t>::max();
+    /// Largest value that a sample of the probe can have, in the picture's unit, where the host knows one: noise that
+    /// looks heavy-tailed is then only slow, and the bounds on the mean error and the energy are widened by what rare
+    /// samples that were not met can add; the quantile and the error bars are not.
+    std::optional<double> sample_bound{};
+    /// Where noise looks heavy-tailed, probes are drawn anew with ever four times the samples, up to this many times
+    /// what samples of relative variance 1 would take; noise that stays so is called by its name.
+    double patience = 64;
     /// Which quantile of the relative error is bounded.
     double quantile = 0.95;
     /// δ above as a share of the picture's mean value: pixels far darker than that cannot spoil a mean.
@@ -88,6 +95,7 @@ struct audit_result {
     std::vector<class_scale> scales{};       ///< error bar of a pixel = scale of its class times its guess
 
     double tail_index{0};     ///< 1/2 for noise of finite variance, above where it falls slower than samples^-1/2
+    double unmet_error{0};    ///< what rare samples that were not met may add to the mean error, part of its bounds
     double largest_share{0};  ///< largest contribution of one probe to the error (or to the target, where that is more)
     std::size_t broken_pixels{0};
     std::size_t broken_samples{0};
@@ -111,6 +119,8 @@ void require_auditable(const audited_picture<T>& picture, const audit_options& o
     require(options.confidence > 0.5 && options.confidence < 1, "confidence: not in (0.5, 1)");
     require(options.probes >= 200, "probes: fewer than 200");
     require(options.noise > 0, "noise: not positive");
+    require(!options.sample_bound || *options.sample_bound > 0, "sample_bound: not positive");
+    require(options.patience >= 1, "patience: below 1");
     require(options.quantile > 0 && options.quantile < 1, "quantile: not in (0, 1)");
     require(options.dark > 0, "dark: not positive");
 }

@@ -36,12 +36,18 @@ public:
           floor_{options.dark * std::abs(mean_)},
           shares_{picture, floor_, options.target} {}
 
-    /// A pilot tells how many samples a probe needs; then the probes, and more for classes that got too few.
+    /// A pilot tells how many samples a probe needs; then the probes, all of them anew with more samples while their
+    /// noise seems heavy-tailed, and more for classes that got too few.
     template <Probe P, Executor E>
     void draw(const P& probe, const E& run) {
         per_batch_ = pilot(probe, run);
         uniform_ = static_cast<std::size_t>(shares_.uniform_part() * static_cast<double>(options_.probes));
         records_ = draw_all(probe, run, main_pixels(), per_batch_, part_main);
+        for (std::uint64_t again = 1; worth_drawing_anew(); ++again) {
+            per_batch_ *= 4;
+            records_ = draw_all(probe, run, main_pixels(), per_batch_, part_anew + again);
+        }
+        slow_ = seems_heavy();
         extra_ = draw_all(probe, run, pixels_of_rare_classes(), per_batch_, part_extra);
     }
 
@@ -52,12 +58,36 @@ public:
     [[nodiscard]] std::size_t samples() const { return samples_; }
     [[nodiscard]] std::size_t broken() const { return broken_; }
 
+    /// Whether the noise falls so slowly that its variance may be infinite, and no bound is known that says otherwise.
+    [[nodiscard]] bool heavy_tailed() const { return slow_ && !options_.sample_bound; }
+
+    /// What rare samples of bounded size that were not met may add to the mean error: the part of Bernstein's
+    /// inequality that does not shrink with the variance seen (Maurer & Pontil 2009, theorem 4). 0 where noise falls as
+    /// it should.
+    [[nodiscard]] double unmet_error(double confidence) const {
+        return slow_ ? reach(confidence) * largest_jump([this](const probe_record& r) { return darkest(r); }) : 0;
+    }
+
+    /// The same for the mean of `gaps()`.
+    [[nodiscard]] double unmet_gap(double confidence) const {
+        return slow_ ? reach(confidence) * largest_jump([](const probe_record&) { return 1.0; }) : 0;
+    }
+
     /// Weighted relative error of each probed pixel, averaged over channels, with most of the probe's own noise taken
     /// out: their mean is the mean relative error of the picture.
     [[nodiscard]] std::vector<double> mean_errors() const {
         return each(records_.size(), [&](const probe_record& r) {
             const double gap = less_noisy([&](unsigned chosen) { return error(r, chosen); });
             return shares_.weight(r.pixel) * (gap + denominator_noise2(r));
+        });
+    }
+
+    /// Weighted size of the noise of each probe, relative as its error is: half the distance of its halves.
+    [[nodiscard]] std::vector<double> noises() const {
+        return each(records_.size(), [&](const probe_record& r) {
+            const double apart = mean_over_choices<4>(
+                [&](unsigned half) { return std::abs(gray(r, half) - gray(r, half ^ every_batch)); });
+            return shares_.weight(r.pixel) * apart / 2 / (std::max(gray(r, every_batch), 0.0) + floor_);
         });
     }
 
@@ -113,6 +143,8 @@ private:
     static constexpr std::size_t pilot_probes = 32;
     static constexpr std::uint64_t part_main = 0;  // parts of the audit's random numbers; pilots are 2, 3, ...
     static constexpr std::uint64_t part_extra = 1;
+    static constexpr std::uint64_t part_anew = 1000;
+    static constexpr double heavy = 0.6;  // tail index that a finite variance seldom shows
     static constexpr unsigned every_batch = (1u << probe_batches) - 1;
 
     [[nodiscard]] double gray(const probe_record& r, unsigned chosen) const {
@@ -132,6 +164,37 @@ private:
     }
 
     [[nodiscard]] double below(const probe_record& r, std::size_t c) const { return std::max(r.mean(c), 0.0) + floor_; }
+
+    [[nodiscard]] double darkest(const probe_record& r) const {
+        double least = std::numeric_limits<double>::max();
+        for (std::size_t c = 0; c < r.channels; ++c) { least = std::min(least, below(r, c)); }
+        return least;
+    }
+
+    [[nodiscard]] bool seems_heavy() const { return tail_index() > heavy; }
+
+    static double reach(double confidence) { return 7 * std::log(2 / (1 - confidence)) / 3; }
+
+    /// How far one sample of the largest size moves the mean of values over `below`; infinite where no size is known.
+    template <typename Below>
+    [[nodiscard]] double largest_jump(const Below& below) const {
+        const double size = options_.sample_bound.value_or(std::numeric_limits<double>::infinity());
+        double largest = 0;
+        for (const probe_record& r : records_) {
+            const double jump = size / static_cast<double>(samples_per_probe()) / below(r);
+            largest = std::max(largest, shares_.weight(r.pixel) * jump);
+        }
+        return largest / static_cast<double>(records_.size());
+    }
+
+    [[nodiscard]] bool worth_drawing_anew() const {
+        const double most = options_.patience / square(options_.noise * options_.target);
+        const bool patient = 4 * static_cast<double>(samples_per_probe()) <= most;
+        const bool affordable = 4 * static_cast<double>(per_batch_) <= affordable_batch();
+        if (!patient || !affordable || !seems_heavy()) { return false; }
+        const double jump = largest_jump([this](const probe_record& r) { return darkest(r); });
+        return reach(options_.confidence) * jump > 0.1 * options_.target;
+    }
 
     /// Relative variance of the best estimate: what its noise in the denominator can take off the mean error at most.
     [[nodiscard]] double denominator_noise2(const probe_record& r) const {
@@ -270,6 +333,7 @@ private:
     pixel_shares shares_;
     std::size_t uniform_{0};
     std::size_t per_batch_{1};
+    bool slow_{false};
     std::size_t samples_{0};
     std::size_t broken_{0};
     std::vector<probe_record> records_{};
