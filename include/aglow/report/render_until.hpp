@@ -44,9 +44,11 @@ struct render_until_options {
     /// Smallest and largest ratio of work between two looks.
     double least_growth = 1.15;
     double most_growth = 2;
-    /// Standard error of a claim's probes as a share of the target, instead of `audit.noise`: what they add to the
-    /// bound costs work twice over where the error falls as its square root, and four times where as its fourth root.
-    double claim_noise = 0.33;
+    /// Standard errors of probes as shares of the target, instead of `audit.noise`: a look begins with the largest, and
+    /// is repeated with half of it while the probes' own noise may be what keeps the error from being certified. What
+    /// it adds to the bound costs work twice over where the error falls as its square root.
+    double most_noise = 1.4;
+    double least_noise = 0.35;
     /// Probes of a scout, and most probes of a claim.
     std::size_t scout_probes = 100;
     std::size_t most_probes = 2000;
@@ -83,7 +85,8 @@ inline void require_until(const render_until_options& options) {
     require(options.most_work >= options.first_work, "most_work: below first_work");
     require(options.least_growth > 1, "least_growth: not above 1");
     require(options.most_growth >= options.least_growth, "most_growth: below least_growth");
-    require(options.claim_noise > 0, "claim_noise: not positive");
+    require(options.least_noise > 0, "least_noise: not positive");
+    require(options.most_noise >= options.least_noise, "most_noise: below least_noise");
     require(options.scout_probes >= 30, "scout_probes: fewer than 30");
     require(options.most_probes >= 200, "most_probes: fewer than 200");
 }
@@ -91,30 +94,28 @@ inline void require_until(const render_until_options& options) {
 /// The rule itself: what has been seen, and what to do next.
 class until_rule {
 public:
-    explicit until_rule(const render_until_options& options) : options_{options} {}
+    explicit until_rule(const render_until_options& options) : options_{options}, coarsest_{options.most_noise} {}
 
-    /// A small audit that claims nothing. Its noise follows the error seen last, for far from the target less will do.
+    /// Small audits that claim nothing, ever sharper until it is clear whether a claim would hold.
     template <std::floating_point T, Probe P, Executor E>
     until_check scout(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
-        audit_options look = fresh_options();
-        look.probes = options_.scout_probes * (worth_a_sharper_look() ? 4 : 1);
-        look.target = std::max(look.target, checks_.empty() ? 0.3 : 0.5 * checks_.back().error);
-        const audited_picture<T> plain{.image = picture.image, .guess = picture.guess};
-        audit_sample<T> sample{plain, look};
-        sample.draw(probe, run);
-        const running_mean errors = mean_of(sample.mean_errors());
-        samples_ += sample.samples();
-        samples_per_probe_ = static_cast<double>(sample.samples_per_probe()) *
-                             square(look.noise * look.target / (options_.claim_noise * options_.audit.target));
-        return add({work, errors.mean(), errors.standard_error(), 0, look.probes}, errors.deviation());
+        until_check seen{};
+        for (noise_ = coarsest_;; noise_ = std::max(noise_ / 2, options_.least_noise)) {
+            seen = look(picture, probe, work, run);
+            const bool own_noise = seen.error < 2 * noise_ * options_.audit.target;
+            if (noise_ <= options_.least_noise || !own_noise || needed_probes(seen.error) <= affordable(work)) {
+                break;
+            }
+        }
+        return add(seen, deviation_);
     }
 
     /// How many probes a claim needs now; 0 where it is better to work on.
     [[nodiscard]] std::size_t probes_for_claim(double work) const {
-        const double error = smoothed_error(work);
-        const double gap = options_.audit.target - error;
-        const double needed =
-            gap > 0 ? 1.2 * square(z() * ratio_.mean() * error / gap) : std::numeric_limits<double>::infinity();
+        // A coarse look stands alone: only sharp ones follow the law of the others.
+        const until_check& last = checks_.back();
+        const double error = noise_ > options_.least_noise ? last.error + last.error_deviation : smoothed_error(work);
+        const double needed = needed_probes(error);
         if (!(needed <= affordable(work))) { return 0; }
         return std::max<std::size_t>(200, static_cast<std::size_t>(needed));
     }
@@ -125,10 +126,12 @@ public:
         audit_options look = fresh_options();
         look.probes = probes;
         look.confidence = 1 - miss();
-        look.noise = options_.claim_noise;
+        look.noise = noise_;
         ++claims_;
         audit_result result = audit(picture, probe, look, run);
         samples_ += result.samples;
+        // Every claim that fails makes the next one dearer: it shall not fail for noise again.
+        if (result.status != audit_status::certified) { coarsest_ = std::max(noise_ / 2, options_.least_noise); }
         if (result.broken_pixels > 0) { return result; }
         const double error = result.mean_error_deviation / std::sqrt(static_cast<double>(probes));
         add({work, result.mean_error, error, result.mean_error_bound, probes}, result.mean_error_deviation);
@@ -161,6 +164,28 @@ public:
     }
 
 private:
+    template <std::floating_point T, Probe P, Executor E>
+    until_check look(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        audit_options look = fresh_options();
+        look.probes = options_.scout_probes * (worth_a_sharper_look() ? 4 : 1);
+        look.noise = noise_;
+        look.patience = 1;
+        audit_sample<T> sample{audited_picture<T>{.image = picture.image, .guess = picture.guess}, look};
+        sample.draw(probe, run);
+        const running_mean errors = mean_of(sample.mean_errors());
+        samples_ += sample.samples();
+        samples_per_probe_ = static_cast<double>(sample.samples_per_probe());
+        deviation_ = errors.deviation();
+        return {work, errors.mean(), errors.standard_error(), 0, look.probes};
+    }
+
+    /// Probes that a claim needs where the mean error is `error`; infinite where no number is enough.
+    [[nodiscard]] double needed_probes(double error) const {
+        const double gap = options_.audit.target - error;
+        const double ratio = ratio_.count() > 0 ? ratio_.mean() : deviation_ / std::max(error, 1e-300);
+        return gap > 0 ? 1.2 * square(z() * ratio * error / gap) : std::numeric_limits<double>::infinity();
+    }
+
     [[nodiscard]] audit_options fresh_options() {
         audit_options look = options_.audit;
         look.stream = mix(options_.audit.stream, ++looks_);
@@ -201,6 +226,7 @@ private:
     }
 
     const render_until_options& options_;
+    double coarsest_;  ///< noise that a look begins with, as a share of the target
     std::vector<until_check> checks_{};
     std::vector<measured_error> checks_for_fit_{};
     std::size_t distinct_{0};
@@ -209,6 +235,8 @@ private:
     std::uint64_t looks_{0};
     running_mean ratio_{};  ///< standard deviation over mean of a probe's error
     double samples_per_probe_{1};
+    double noise_{0};      ///< of the last look's probes, as a share of the target
+    double deviation_{0};  ///< of their errors
 };
 
 }  // namespace detail
