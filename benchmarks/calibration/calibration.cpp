@@ -80,7 +80,9 @@ void count_bars(const known_scene& scene, const judged_picture& picture, const t
 tally calibrate(const known_scene& scene, const judged_picture& picture) {
     tally result;
     const auto probe = [&](std::size_t pixel, std::uint64_t seed, std::size_t) { return scene.look(pixel, seed); };
-    aglow::audit_options options{.probes = 400};
+    aglow::audit_options options{.probes = 400, .sample_bound = scene.sample_bound()};
+    // What the pool can give.
+    options.budget = options.probes * aglow::probe_batches * scene.samples_per_look();
     const true_errors truth = errors_of(scene, picture, options.dark);
     // A target near the true error: what a false certificate would take least luck for.
     options.target = 0.97 * truth.mean_relative;
@@ -96,21 +98,59 @@ tally calibrate(const known_scene& scene, const judged_picture& picture) {
     return result;
 }
 
-/// A picture that is wrong on purpose: how often it is certified all the same.
-void control(const known_scene& scene, const char* what, const judged_picture& wrong, double target, double bias_target,
-             bool should_pass) {
+/// How many of up to 100 audits of `picture` certify it.
+std::size_t certified(const known_scene& scene, const judged_picture& picture, aglow::audit_options options,
+                      std::size_t trials) {
     const auto probe = [&](std::size_t pixel, std::uint64_t seed, std::size_t) { return scene.look(pixel, seed); };
     std::size_t passed = 0;
-    const std::size_t trials = std::min<std::size_t>(scene.how().certificates, 100);
     for (std::size_t i = 0; i < trials; ++i) {
-        aglow::audit_options options{.target = target, .probes = 1000, .seed = 5000 + i};
-        if (bias_target > 0) { options.bias_target = bias_target; }
-        const auto stated = aglow::audit(wrong.audited(), probe, options, aglow::own_threads{});
+        options.seed = 5000 + i;
+        const auto stated = aglow::audit(picture.audited(), probe, options, aglow::own_threads{});
         if (stated.status == aglow::audit_status::certified) { ++passed; }
     }
-    std::printf("control %-40s certified %zu of %zu, %s\n", what, passed, trials,
+    return passed;
+}
+
+/// A picture, and how often it is certified: always if it is right, never if it is wrong on purpose.
+void control(const known_scene& scene, const char* what, const judged_picture& picture, double target,
+             double bias_target, bool should_pass) {
+    aglow::audit_options options{.target = target, .probes = 1000, .sample_bound = scene.sample_bound()};
+    options.budget = options.probes * aglow::probe_batches * scene.samples_per_look();
+    if (bias_target > 0) { options.bias_target = bias_target; }
+    const std::size_t trials = std::min<std::size_t>(scene.how().certificates, 100);
+    const std::size_t passed = certified(scene, picture, options, trials);
+    std::printf("control %-52s certified %3zu of %zu, %s\n", what, passed, trials,
                 should_pass ? (passed * 10 >= trials * 9 ? "as it should" : "TOO SELDOM")
-                            : (passed * 20 <= trials ? "as it should not be" : "TOO OFTEN"));
+                            : (passed * 100 <= trials ? "as it should not be" : "TOO OFTEN"));
+    std::fflush(stdout);
+}
+
+/// The same method, right and with a mistake, at a target a little below the error of the wrong picture.
+void control_mistake(const known_scene& scene, const char* what, std::size_t method, mistake wrong) {
+    const judged_picture bad = render(scene, method, 7, wrong);
+    const double dark = aglow::audit_options{}.dark;
+    const double bad_error = errors_of(scene, bad, dark).mean_relative;
+    const double good_error = errors_of(scene, render(scene, method, 7), dark).mean_relative;
+    char words[96];
+    std::snprintf(words, sizeof words, "%s: error %.1f %%, without %.1f %%", what, 100 * bad_error, 100 * good_error);
+    control(scene, words, bad, 0.97 * bad_error, 0, false);
+}
+
+/// A second lamp, without size and with about one per cent of the light, that the picture does not know of.
+void control_missing_lamp(const known_scene& scene) {
+    auto description = *host::scenes::find<float>(scene.name());
+    description.name += " and a small lamp";
+    description.lamps.push_back({{100, 480, 100}, {700, 700, 700}});
+    const known_scene lit{description, scene.how()};
+    const judged_picture dim = render(lit, scene.scene(), 3, 7);
+    const judged_picture whole = render(lit, 3, 7);
+    char words[96];
+    const double bias = errors_of(lit, dim, aglow::audit_options{}.dark).bias;
+    std::snprintf(words, sizeof words, "a lamp missing: energy %+.2f %%, asked for 0.5 %%", 100 * bias);
+    control(lit, words, dim, 0.1, 0.005, false);
+    std::snprintf(words, sizeof words, "the same with its lamp: energy %+.2f %%",
+                  100 * errors_of(lit, whole, aglow::audit_options{}.dark).bias);
+    control(lit, words, whole, 0.1, 0.015, true);
 }
 
 void controls(const known_scene& scene) {
@@ -127,6 +167,10 @@ void controls(const known_scene& scene) {
     judged_picture broken = exact;
     broken.values[broken.values.size() / 2] = std::numeric_limits<float>::quiet_NaN();
     control(scene, "one pixel is NaN", broken, 0.05, 0, false);
+    control_mistake(scene, "photon map, radius x 3", 0, mistake::wide_radius);
+    control_mistake(scene, "final gather, photons of one bounce", 1, mistake::no_depth);
+    control_mistake(scene, "irradiance cache, a = 1", 2, mistake::coarse_cache);
+    control_missing_lamp(scene);
 }
 
 void print_head() {
@@ -147,6 +191,8 @@ void print(const known_scene& scene, const char* method, const tally& t) {
 
 int main(int argc, char** argv) {
     effort e;
+    bool chosen = false;
+    bool with_controls = true;
     std::vector<std::string> scenes{"cornell-diffuse", "point-light", "two-rooms", "cornell-glass"};
     for (int i = 1; i < argc; ++i) {
         if (std::strcmp(argv[i], "--smoke") == 0) {
@@ -154,12 +200,22 @@ int main(int argc, char** argv) {
             scenes = {"cornell-diffuse"};
         } else if (std::strcmp(argv[i], "--full") == 0) {
             e = {.pixels = 96, .truth = 65536, .pool = 16384, .batches = 64, .certificates = 1000};
+        } else if (std::strncmp(argv[i], "--pixels=", 9) == 0) {
+            e.pixels = std::stoul(argv[i] + 9);
+        } else if (std::strncmp(argv[i], "--truth=", 8) == 0) {
+            e.truth = static_cast<std::uint32_t>(std::stoul(argv[i] + 8));
+        } else if (std::strncmp(argv[i], "--pool=", 7) == 0) {
+            e.pool = static_cast<std::uint32_t>(std::stoul(argv[i] + 7));
+        } else if (std::strcmp(argv[i], "--no-controls") == 0) {
+            with_controls = false;
         } else if (std::strncmp(argv[i], "--", 2) != 0) {
-            if (i == 1) { scenes.clear(); }
+            if (!chosen) { scenes.clear(); }
+            chosen = true;
             scenes.emplace_back(argv[i]);
         } else {
             std::printf(
-                "usage: calibration [SCENE ...] [--smoke | --full]\n"
+                "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--truth=N] [--pool=N] "
+                "[--no-controls]\n"
                 "Percentages of %zu certificates at nominal 95 %%: error bars by kind of pixel; statements on the\n"
                 "energy, the mean relative error and its 95 %% quantile; false certificates at a target just below\n"
                 "the true error.\n",
@@ -173,10 +229,10 @@ int main(int argc, char** argv) {
             std::fprintf(stderr, "calibration: no scene called %s\n", name.c_str());
             return 2;
         }
-        const known_scene scene{name, e};
+        const known_scene scene{*host::scenes::find<float>(name), e};
         for (std::size_t m = 0; m < std::size(methods); ++m) {
             print(scene, methods[m], calibrate(scene, render(scene, m, 7)));
         }
-        controls(scene);
+        if (with_controls) { controls(scene); }
     }
 }

@@ -40,8 +40,8 @@ public:
         };
     }
 
-    known_scene(const std::string& name, const effort& e)
-        : name_{name}, effort_{e}, scene_{*host::scenes::find<float>(name)} {
+    known_scene(const host::scene_description<float>& description, const effort& e)
+        : name_{description.name}, effort_{e}, scene_{description} {
         const aglow::path_tracer tracer{scene_, scene_.lights()};
         aglow::film<rgb> film{e.pixels, e.pixels};
         film.expose(eye(), tracer, {.samples = e.truth, .seed = 1001}, aglow::own_threads{});
@@ -63,6 +63,17 @@ public:
     [[nodiscard]] const std::vector<char>& feature() const { return feature_; }
     /// Pixels that owe a tenth of their light or more to caustics.
     [[nodiscard]] const std::vector<char>& caustic() const { return caustic_; }
+
+    /// Samples that a look is the mean of.
+    [[nodiscard]] std::size_t samples_per_look() const { return effort_.pool / effort_.batches; }
+
+    /// What no sample of a path exceeds but for a share that falls exponentially: the brightest lamp at each surface
+    /// before roulette begins, and once more for what is left then.
+    [[nodiscard]] double sample_bound() const {
+        float brightest = 0;
+        for (const float x : truth_) { brightest = std::max(brightest, x); }
+        return brightest * (aglow::path_options{}.roulette_from + 1.0);
+    }
 
     /// An unbiased look at a pixel: one batch of the pool, chosen by the seed.
     [[nodiscard]] rgb look(std::size_t pixel, std::uint64_t seed) const {
@@ -179,10 +190,13 @@ struct judged_picture {
 inline constexpr const char* methods[] = {"photon map", "final gather", "irradiance cache", "gather cache",
                                           "progressive"};
 
-/// The picture of `scene` by method number `method`.
-[[nodiscard]] inline judged_picture render(const known_scene& scene, std::size_t method, std::uint64_t seed) {
+/// What is wrong with a picture, on purpose.
+enum class mistake { none, wide_radius, no_depth, lamp_missing, coarse_cache };
+
+/// The picture of `scene` by method number `method`, seen in `world`.
+[[nodiscard]] inline judged_picture render(const known_scene& scene, const host::scene<float>& world,
+                                           std::size_t method, std::uint64_t seed, mistake wrong = mistake::none) {
     const std::size_t n = scene.how().pixels;
-    const auto& world = scene.scene();
     const auto& lights = world.lights();
     const aglow::own_threads run{};
     aglow::film<rgb> film{n, n};
@@ -193,9 +207,13 @@ inline constexpr const char* methods[] = {"photon map", "final gather", "irradia
     caching.view = {.width = n, .height = n, .looks = 4};
     caching.fill.rays = 256;
     caching.fill.seed = seed;
-    const aglow::photon_options photons{.direct = 10'000, .caustic = 50'000, .indirect = 50'000, .seed = seed};
+    if (wrong == mistake::coarse_cache) { caching.cache.reach.accuracy = 1; }
+    aglow::photon_options photons{.direct = 10'000, .caustic = 50'000, .indirect = 50'000, .seed = seed};
+    if (wrong == mistake::no_depth) { photons.most_bounces = 1; }
+    aglow::density_options density;
+    if (wrong == mistake::wide_radius) { density.count *= 9; }
     switch (method) {
-        case 0: expose(aglow::photon_mapping{world, lights, {.photons = photons}, run}, 16); break;
+        case 0: expose(aglow::photon_mapping{world, lights, {.photons = photons, .density = density}, run}, 16); break;
         case 1: expose(aglow::final_gathering{world, lights, {.photons = photons, .rays = 32}, run}, 16); break;
         case 2: expose(aglow::irradiance_caching{world, lights, world.bounds(), scene.eye(), caching, run}, 16); break;
         case 3: {
@@ -212,6 +230,12 @@ inline constexpr const char* methods[] = {"photon map", "final gather", "irradia
         }
     }
     return judge(scene, film);
+}
+
+/// The picture of `scene` by method number `method`.
+[[nodiscard]] inline judged_picture render(const known_scene& scene, std::size_t method, std::uint64_t seed,
+                                           mistake wrong = mistake::none) {
+    return render(scene, scene.scene(), method, seed, wrong);
 }
 
 }  // namespace calibration
