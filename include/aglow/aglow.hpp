@@ -65,6 +65,7 @@
 #include <aglow/estimators/irradiance_points.hpp>
 #include <aglow/estimators/irradiance_record.hpp>
 #include <aglow/estimators/kernel.hpp>
+#include <aglow/estimators/linear_light.hpp>
 #include <aglow/estimators/photon.hpp>
 #include <aglow/estimators/photon_map.hpp>
 #include <aglow/estimators/record_blend.hpp>
@@ -81,6 +82,7 @@
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/final_gather.hpp>
 #include <aglow/algorithms/gather.hpp>
+#include <aglow/algorithms/gloss_layer.hpp>
 #include <aglow/algorithms/host_faults.hpp>
 #include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>

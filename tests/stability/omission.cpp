@@ -28,7 +28,7 @@ static_assert(record_bytes<float, record_features{.gradients = false, .ellipse =
               record_bytes<float, record_features{.gradients = false}>);
 static_assert(record_bytes<float, record_features{.gradients = false, .noise = false}> + 4 ==
               record_bytes<float, record_features{.gradients = false}>);
-static_assert(record_bytes<rgb, record_features{.incident = true}> == record_bytes<rgb, record_features{}> + 4);
+static_assert(record_bytes<rgb, record_features{.incident = true}> == record_bytes<rgb, record_features{}> + 8);
 static_assert(sizeof(photon<rgb>) <= 24);
 static_assert(sizeof(photon<float>) <= 16);
 

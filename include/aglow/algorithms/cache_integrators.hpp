@@ -10,6 +10,7 @@
 
 #include <aglow/algorithms/cache_candidates.hpp>
 #include <aglow/algorithms/fill_cache.hpp>
+#include <aglow/algorithms/gloss_layer.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
@@ -104,7 +105,8 @@ struct caching_options {
     irradiance_cache_options cache{};
     fill_cache_options fill{};
     view_options view{};
-    path_options paths{};  ///< through mirrors and gloss
+    path_options paths{};   ///< through mirrors and gloss
+    gloss_options gloss{};  ///< of `glossy_caching_options`
 };
 
 namespace detail {
@@ -120,7 +122,7 @@ template <Scene World, typename Eye, typename Reader, Executor Run, typename Fro
     view.progress = report.phase(preparation_phase::places, view.progress);
     const auto places = cache_candidates(scene, eye, view, run);
     const auto tell = report.phase(preparation_phase::records);
-    irradiance_cache<spectrum_of<World>, scalar_of<World>> cache{box, options.cache};
+    irradiance_cache<spectrum_of<World>, scalar_of<World>, Frozen::record::features> cache{box, options.cache};
     filled = fill_cache(cache, places, reader, options.fill, run, [&](const fill_progress& now) {
         const double left = static_cast<double>(now.uncovered) / static_cast<double>(now.candidates);
         return !tell || tell(1 - left);
@@ -132,14 +134,19 @@ template <Scene World, typename Eye, typename Reader, Executor Run, typename Fro
 
 }  // namespace detail
 
+/// The same for a picture that reads broad glossy reflection from the cache too, instead of following it by rays:
+/// records keep where light comes from, 8 bytes more each.
+struct glossy_caching_options : caching_options {};
+
 /// An integrator: direct light by shadow rays, indirect light from an irradiance cache whose gather rays are
-/// path-traced. Fills the cache for the picture of `eye` when made. `const`, safe from many threads.
-template <Scene World, Illuminator Lights>
+/// path-traced. Fills the cache for the picture of `eye` when made. Handed `glossy_caching_options`, it reads glossy
+/// lobes from the cache as well. `const`, safe from many threads.
+template <Scene World, Illuminator Lights, record_features Features = record_features{}>
 class irradiance_caching {
 public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
-    using cache_type = frozen_irradiance_cache<spectrum, scalar>;
+    using cache_type = frozen_irradiance_cache<spectrum, scalar, Features>;
 
     /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut the filling short: the picture
     /// then gathers afresh where it finds no record.
@@ -155,9 +162,14 @@ public:
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
-        const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
-                               cache_layer{cache_, path_reader<World, Lights>{source_}, shared_}};
-        return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
+        const cache_layer diffuse{cache_, path_reader<World, Lights>{source_}, shared_};
+        if constexpr (Features.incident) {
+            const glossy_cache_layers layers{scene_, lights_, cache_, diffuse, options_.gloss, options_.paths.faults};
+            return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
+        } else {
+            const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults}, diffuse};
+            return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
+        }
     }
 
     [[nodiscard]] const cache_type& cache() const { return cache_; }
@@ -174,6 +186,11 @@ private:
     fill_result filled_{};
     shared_error shared_{};
 };
+
+template <Scene World, Illuminator Lights, std::floating_point T, typename Eye, Executor Run = in_sequence>
+irradiance_caching(const World&, const Lights&, const bounds<T>&, const Eye&, const glossy_caching_options&,
+                   const Run& = {}, const preparation_progress& = {})
+    -> irradiance_caching<World, Lights, record_features{.incident = true}>;
 
 /// What the classical combination is made of.
 struct gather_caching_options {

@@ -28,7 +28,9 @@ public:
         const auto shade = [&](auto& walk, const detail::walk_stop<World>& stop) {
             const lobe_set lobes = stop.hit.lobes();
             if (any(lobes, lobe_set::smooth)) {
-                walk.add(layers_(stop.hit, stop.wo, stop.error, walk.numbers(), stop.bounce));
+                const auto seen = layers_(stop.hit, stop.wo, stop.error, walk.numbers(), stop.bounce);
+                walk.add(seen);
+                if constexpr (requires { seen.left; }) { return seen.left; }
             }
             return lobes & ~lobe_set::diffuse;
         };

@@ -75,15 +75,15 @@ template <Scene World, Illuminator Lights>
 class direct_layer {
 public:
     direct_layer(const World& scene, const Lights& lights, lobe_set lit = lobe_set::smooth,
-                 host_faults* faults = nullptr)
-        : scene_{scene}, lights_{lights}, lit_{lit}, faults_{faults} {}
+                 host_faults* faults = nullptr, lobe_set unscattered = lobe_set::none)
+        : scene_{scene}, lights_{lights}, lit_{lit}, faults_{faults}, unscattered_{lobe_set::diffuse | unscattered} {}
 
     template <typename N>
     [[nodiscard]] estimate<spectrum_of<World>> operator()(const hit_of<World>& hit, const vec3<scalar_of<World>>& wo,
                                                           scalar_of<World> error, const N& numbers,
                                                           std::uint32_t bounce) const {
         // Specular lobes take their share of the scattered rays: what is scattered here must be named as it is there.
-        const lobe_set scattered = hit.lobes() & ~lobe_set::diffuse;
+        const lobe_set scattered = hit.lobes() & ~unscattered_;
         if (!any(hit.lobes(), lit_ & lobe_set::smooth)) { return {}; }
         return {direct_light(scene_, lights_, hit, wo, error, numbers.at(bounce, purpose::light),
                              {.lit = lit_ | lobe_set::specular, .scattered = scattered, .faults = faults_}),
@@ -95,6 +95,7 @@ private:
     const Lights& lights_;
     lobe_set lit_;
     host_faults* faults_;
+    lobe_set unscattered_;  ///< lobes that no ray will look for lights from
 };
 
 /// Several layers, added up.

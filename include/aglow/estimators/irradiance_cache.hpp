@@ -141,6 +141,16 @@ public:
         return answer;
     }
 
+    /// The same, and where the light comes from.
+    [[nodiscard]] light_answer<S, T> light(const vec3<T>& point, const vec3<T>& normal) const
+        requires(Features.incident) {
+        light_blend<S, T> blend{point, normal, limits_};
+        sphere_hits<T> near;
+        reaches_.search(covering_question<T>{point}, near);
+        for (const std::uint32_t number : near.items()) { blend.add(items_[number]); }
+        return blend.answer();
+    }
+
     /// What the record says that fits best, however badly: for the odd point between all reaches. Asks every record, so
     /// takes as long as a few gather rays. False only where no record faces the same half space.
     [[nodiscard]] irradiance_answer<S, T> nearest(const vec3<T>& point, const vec3<T>& normal) const {

@@ -11,6 +11,7 @@
 #include <aglow/estimators/hemisphere.hpp>
 #include <aglow/estimators/irradiance_gradients.hpp>
 #include <aglow/estimators/irradiance_hessian.hpp>
+#include <aglow/estimators/linear_light.hpp>
 
 namespace aglow {
 
@@ -26,6 +27,7 @@ struct irradiance_estimate {
     T mean_inverse_distance{};      ///< one over the harmonic mean distance; 0 = open sky
     T nearest_inverse_distance{};   ///< one over the distance to the nearest thing seen
     vec3<T> incident{};             ///< mean direction to the light along `axes`; length tells concentration
+    T misfit{};                     ///< what light linear in direction leaves out: see `linear_misfit`
     T relative_noise{};             ///< standard error over irradiance, of the largest band
     std::uint32_t rays{};           ///< samples taken
     std::uint32_t rejected{};       ///< of these, how many were no numbers
@@ -58,7 +60,10 @@ public:
         result.irradiance = grid.irradiance();
         if (parts_.gradients) { result.gradients = gradients(grid, gradient_weights_); }
         if (parts_.curvature) { result.curvature = relative_hessian(grid, hessian_weights_, scratch); }
-        if (parts_.incident) { result.incident = incident_direction(grid); }
+        if (parts_.incident) {
+            result.incident = incident_direction(grid);
+            result.misfit = linear_misfit(grid, result.incident);
+        }
         result.mean_inverse_distance = grid.mean_inverse_distance();
         result.nearest_inverse_distance = grid.nearest_inverse_distance();
         result.relative_noise = relative_noise(grid);

@@ -16,6 +16,7 @@
 #include <aglow/core/vec.hpp>
 #include <aglow/estimators/compact_gradients.hpp>
 #include <aglow/estimators/irradiance_estimate.hpp>
+#include <aglow/estimators/linear_light.hpp>
 #include <aglow/estimators/record_reach.hpp>
 
 namespace aglow {
@@ -25,7 +26,7 @@ struct record_features {
     bool gradients{true};  ///< first-order extrapolation
     bool ellipse{true};    ///< a reach that differs by direction
     bool noise{true};      ///< standard error and number of rays
-    bool incident{false};  ///< mean direction to the light, for glossy surfaces
+    bool incident{false};  ///< where light comes from, for glossy surfaces
 
     friend constexpr bool operator==(const record_features&, const record_features&) = default;
 };
@@ -134,8 +135,8 @@ public:
         if constexpr (Features.ellipse) { ellipse_ = {reach.ratio, turned(reach.axis)}; }
         if constexpr (Features.noise) { noise_ = {e.relative_noise, e.rays - e.rejected}; }
         if constexpr (Features.incident) {
-            const vec3<T> towards = e.axes.to_world(e.incident);
-            incident_ = length2(towards) > 0 ? octahedral{towards} : normal_;
+            const bool dark = !(length2(e.incident) > 0);
+            incident_ = {dark ? e.axes.z * (T(2) / 3) : e.axes.to_world(e.incident), dark ? T(0) : e.misfit};
         }
     }
 
@@ -157,8 +158,11 @@ public:
         }
     }
 
-    /// Mean direction to the light; the normal where it was black.
-    [[nodiscard]] vec3<T> incident() const requires(Features.incident) { return incident_.template direction<T>(); }
+    /// Mean direction to the light, its length telling how concentrated it is; as of an even sky where it was black.
+    [[nodiscard]] vec3<T> incident() const requires(Features.incident) { return incident_.template mean<T>(); }
+
+    /// What light linear in direction leaves out (`linear_misfit`).
+    [[nodiscard]] T misfit() const requires(Features.incident) { return incident_.template misfit<T>(); }
 
     /// Standard error over irradiance, of the largest band.
     [[nodiscard]] T relative_noise() const requires(Features.noise) { return noise_.template noise<T>(); }
@@ -212,7 +216,7 @@ private:
     [[no_unique_address]] detail::part_or_nothing<Features.ellipse, detail::compact_ellipse, 0> ellipse_{};
     [[no_unique_address]] detail::part_or_nothing<Features.noise, detail::compact_noise, 1> noise_{};
     [[no_unique_address]] detail::part_or_nothing<Features.gradients, compact_gradients<S, T>, 2> gradients_{};
-    [[no_unique_address]] detail::part_or_nothing<Features.incident, octahedral, 3> incident_{};
+    [[no_unique_address]] detail::part_or_nothing<Features.incident, compact_light, 3> incident_{};
 };
 
 /// Whether a record can be made: place, normal and light are numbers, the reach is a length, most rays were good.
@@ -228,7 +232,8 @@ template <Spectrum S, std::floating_point T>
     const bool known = is_finite(e.mean_inverse_distance) && e.mean_inverse_distance >= 0 &&
                        is_finite(e.nearest_inverse_distance) && e.nearest_inverse_distance >= 0 && is_finite(xx) &&
                        is_finite(xy) && is_finite(yy);
-    return known && finite(e.position) && finite(e.axes.z) && length > T(0.99) && length < T(1.01) &&
+    const bool lit = finite(e.incident) && is_finite(e.misfit) && e.misfit >= 0;
+    return known && lit && finite(e.position) && finite(e.axes.z) && length > T(0.99) && length < T(1.01) &&
            is_radiance(e.irradiance) && finite_band(t.x) && finite_band(t.y) && finite_band(r.x) && finite_band(r.y) &&
            is_finite(reach.radius) && reach.radius > 0 && is_finite(reach.ratio) && is_finite(e.relative_noise) &&
            2 * e.rejected <= e.rays;

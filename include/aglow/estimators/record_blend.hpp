@@ -251,6 +251,9 @@ public:
                 records_};
     }
 
+protected:
+    [[nodiscard]] T weight() const { return weight_; }
+
 private:
     static constexpr std::size_t eight = detail::eight_shapes<T>::count;
 
@@ -281,6 +284,50 @@ private:
     T error_{};
     double variance_{};  ///< squares of faint light leave the range of floats
     std::uint32_t records_{0};
+};
+
+/// What records say that also keep where light comes from.
+template <Spectrum S, std::floating_point T>
+struct light_answer : irradiance_answer<S, T> {
+    vec3<T> incident{};  ///< mean direction to the light
+    T misfit{};          ///< what light linear in direction leaves out, of each record and from one to the next
+};
+
+/// Gathers the answer for one point from records that keep `incident`.
+template <Spectrum S, std::floating_point T>
+class light_blend : public record_blend<S, T> {
+public:
+    using record_blend<S, T>::record_blend;
+
+    /// Adds one item, as of `record_blend::add`.
+    template <typename Item>
+    void add(const Item& item) {
+        const T before = this->weight();
+        record_blend<S, T>::add(
+            1, [&](std::size_t) -> const Item& { return item; }, [](detail::verdict) {});
+        const T share = (this->weight() - before) * static_cast<T>(max_component(item.record.irradiance()));
+        const vec3<T> incident = item.record.incident();
+        incident_ += incident * share;
+        squares_ += length2(incident) * share;
+        misfit_ += item.record.misfit() * share;
+        total_ += share;
+    }
+
+    [[nodiscard]] light_answer<S, T> answer() const {
+        light_answer<S, T> result{record_blend<S, T>::answer()};
+        if (!(total_ > 0)) { return result; }
+        result.incident = incident_ / total_;
+        // A mean direction that is off by d makes the linear light wrong by sqrt(18) d at the most.
+        const T spread2 = std::max(T(0), squares_ / total_ - length2(result.incident));
+        result.misfit = std::sqrt(square(misfit_ / total_) + 18 * spread2);
+        return result;
+    }
+
+private:
+    vec3<T> incident_{0};
+    T squares_{0};
+    T misfit_{0};
+    T total_{0};
 };
 
 }  // namespace aglow
