@@ -1,8 +1,10 @@
 // What a matte scene pays for all that the library could do besides: time and code beside a twin written by hand.
-//   left_out [pairs] [library's object] [twin's object]
+//   left_out [pairs] [library's object] [twin's object] [gate]
+// With `gate` it fails where three quarters of the pairs are slower than 1.03, or the code is above 1.02.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <string>
 #include <vector>
@@ -43,10 +45,13 @@ int main(int count, char** arguments) {
     const auto at = [&](double q) { return ratios[static_cast<std::size_t>(q * static_cast<double>(pairs - 1))]; };
     std::printf("light found     library %.9g, twin %.9g\n", static_cast<double>(library), static_cast<double>(twin));
     std::printf("time to twin's  %.3f (quartiles %.3f, %.3f), to stay below 1.03\n", at(0.5), at(0.25), at(0.75));
+    bool within = true;
     if (count > 3) {
         const double a = static_cast<double>(code_bytes(arguments[2]));
         const double b = static_cast<double>(code_bytes(arguments[3]));
         std::printf("code to twin's  %.3f (%g bytes, %g bytes), to stay within 1.02\n", a / b, a, b);
+        within = at(0.25) <= 1.03 && a > 0 && a <= 1.02 * b;
     }
-    return std::abs(library - twin) <= 1e-5f * twin ? 0 : 1;
+    const bool gate = count > 4 && std::strcmp(arguments[4], "gate") == 0;
+    return std::abs(library - twin) <= 1e-5f * twin && (within || !gate) ? 0 : 1;
 }

@@ -76,7 +76,8 @@ template <Scene World, Illuminator Lights, Sampler R>
     const T cosine = std::abs(glm::dot(vec3<T>(hit.normal), wi));
     // What the scene cannot have by its type is no code either.
     const lobe_set lit = sharing.lit & static_lobes<World>;
-    S reflected = hit.evaluate(wo, wi, lit & ~sharing.scattered);
+    const lobe_set alone = lit & ~sharing.scattered;
+    S reflected = any(alone) ? S(hit.evaluate(wo, wi, alone)) : S{};
     const lobe_set shared = lit & sharing.scattered;
     if (any(shared, lobe_set::smooth)) {
         const bool told = is_finite(T(light->distance)) ? TellsPdf<Lights, hit_of<World>> : TellsEscapedPdf<Lights, T>;

@@ -38,8 +38,10 @@ private:
 
 /// Radiance along one ray by path tracing, for a host that wants no object.
 template <Scene World, Illuminator Lights, Numbers N>
-[[nodiscard]] spectrum_of<World> path_trace(const World& scene, const Lights& lights, const ray<scalar_of<World>>& eye,
-                                            const N& numbers, const path_options& options = {}) {
+[[nodiscard, gnu::always_inline]] inline spectrum_of<World> path_trace(const World& scene, const Lights& lights,
+                                                                       const ray<scalar_of<World>>& eye,
+                                                                       const N& numbers,
+                                                                       const path_options& options = {}) {
     return walk_path(scene, lights, eye, numbers, emission_rule::all, options).radiance;
 }
 

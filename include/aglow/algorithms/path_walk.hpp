@@ -95,16 +95,17 @@ template <Scene World, typename Lights>
 
 /// Notes what a path carried when a broken answer of the host ended it.
 template <Spectrum S>
-[[nodiscard]] bool lose(const path_options& options, host_fault why, const S& carried) {
+[[nodiscard]] inline bool lose(const path_options& options, host_fault why, const S& carried) {
     if (options.faults) { options.faults->note(why, static_cast<double>(max_component(carried))); }
     return false;
 }
 
 /// Sends the walk on from `hit` by one of `lobes`; false where it ends.
 template <Scene World, Numbers N>
-[[nodiscard]] bool scatter(walk_state<World>& at, const hit_of<World>& hit, const vec3<scalar_of<World>>& wo,
-                           scalar_of<World> error, const N& numbers, std::uint32_t bounce, lobe_set lobes,
-                           const path_options& options) {
+[[nodiscard, gnu::always_inline]] inline bool scatter(walk_state<World>& at, const hit_of<World>& hit,
+                                                      const vec3<scalar_of<World>>& wo, scalar_of<World> error,
+                                                      const N& numbers, std::uint32_t bounce, lobe_set lobes,
+                                                      const path_options& options) {
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
     using B = band_of<S>;
@@ -128,8 +129,9 @@ template <Scene World, Numbers N>
     at.mirrored = at.mirrored && !any(next->lobe, lobe_set::smooth);
     at.scatter_pdf = any(next->lobe, lobe_set::smooth) ? T(next->pdf) : T(0);
     if (any(next->lobe, lobe_set::smooth)) { at.travelled = 0; }
-    at.came_from = vec3<T>(hit.position);
-    at.path = {lift(at.came_from, vec3<T>(hit.normal), wi, error), wi};
+    const vec3<T> here = hit.position;
+    at.came_from = here;
+    at.path = {lift(here, vec3<T>(hit.normal), wi, error), wi};
     return true;
 }
 
@@ -162,16 +164,17 @@ public:
     /// returns the lobes to go on by. At the first `splits` surfaces, mirrors all, the walk goes both ways where they
     /// are two.
     template <typename Shade>
-    [[nodiscard]] incoming_light<S, T> run(const Shade& shade, std::uint32_t splits = 0, std::uint32_t bounce = 1) {
+    [[nodiscard, gnu::always_inline]] inline incoming_light<S, T> run(const Shade& shade, std::uint32_t splits = 0,
+                                                                      std::uint32_t bounce = 1) {
         for (;; ++bounce) {
             const auto hit = scene_.intersect(at_.path);
             if (!hit) { return leave(bounce); }
-            if (!is_sound(*hit, at_.path)) {
-                const bool placed = is_placed(*hit, at_.path);
-                (void)lose(options_, placed ? host_fault::normal : host_fault::place, at_.throughput);
+            const walk_stop<World> stop = stop_at(*hit, bounce);
+            if (!is_sound(*hit, at_.path, stop.error)) {
+                (void)lose(options_, fault_of(*hit), at_.throughput);
                 return result_;
             }
-            const walk_stop<World> stop = arrive(*hit, bounce);
+            take_in(stop);
             if (options_.most_bounces != 0 && bounce > options_.most_bounces) { return result_; }
             const lobe_set on = shade(*this, stop);
             if constexpr (can_fork) {
@@ -230,18 +233,24 @@ private:
         return result_;
     }
 
-    walk_stop<World> arrive(const hit_of<World>& hit, std::uint32_t bounce) {
-        const vec3<T> wo = -at_.path.direction;
+    [[nodiscard]] walk_stop<World> stop_at(const hit_of<World>& hit, std::uint32_t bounce) {
         at_.travelled += glm::dot(vec3<T>(hit.position) - at_.path.origin, at_.path.direction);
-        if (bounce == 1) { result_.distance = at_.travelled; }
-        const S glow = emitted(hit, wo);
-        if (!is_radiance(glow) || !is_black(glow)) { add(glow * B(emission_share(at_, lights_, hit, rule_, bounce))); }
-        return {hit, wo, at_.travelled, error_of(hit, at_.path.origin), bounce};
+        return {hit, -at_.path.direction, at_.travelled, error_of(hit, at_.path.origin), bounce};
+    }
+
+    /// What the surface sends out by itself.
+    void take_in(const walk_stop<World>& stop) {
+        if (stop.bounce == 1) { result_.distance = stop.travelled; }
+        const S glow = emitted(stop.hit, stop.wo);
+        if (is_radiance(glow) && is_black(glow)) { return; }
+        add(glow * B(emission_share(at_, lights_, stop.hit, rule_, stop.bounce)));
     }
 
     incoming_light<S, T> leave(std::uint32_t bounce) {
-        const T share = escape_share(at_, lights_, rule_, bounce);
-        if (share > 0) { add(escaped_radiance<S>(lights_, at_.path.direction) * B(share)); }
+        if constexpr (ShinesFromBeyond<Lights, T>) {
+            const T share = escape_share(at_, lights_, rule_, bounce);
+            if (share > 0) { add(escaped_radiance<S>(lights_, at_.path.direction) * B(share)); }
+        }
         return result_;
     }
 
@@ -249,7 +258,7 @@ private:
     const Lights& lights_;
     N numbers_;
     emission_rule rule_;
-    const path_options& options_;
+    const path_options options_;
     walk_state<World> at_;
     incoming_light<S, T> result_{};
 };
@@ -263,7 +272,7 @@ private:
 /// diffuse or glossy surface, `mirrored` tells that there were only mirrors before. Samples with broken hits or numbers
 /// end where they are, never summed.
 template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
-[[nodiscard]] incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
+[[nodiscard, gnu::always_inline]] inline incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
     const World& scene, const Lights& lights, const ray<scalar_of<World>>& start, const N& numbers,
     emission_rule rule = emission_rule::all, const path_options& options = {}, const Terminal& terminal = {}) {
     const auto shade = [&](auto& walk, const detail::walk_stop<World>& stop) {

@@ -36,17 +36,27 @@ template <typename T>
     return is_finite(norm2) && norm2 > T(0.99) && norm2 < T(1.01);
 }
 
-/// Whether a hit is at a place: finite, and not behind the ray.
+/// Whether a hit whose position may be off by `error` is at a place: finite, and not behind the ray.
 template <Hit H, typename T>
-[[nodiscard]] bool is_placed(const H& hit, const ray<T>& from) {
+[[nodiscard]] inline bool is_placed(const H& hit, const ray<T>& from, T error) {
     const T along = glm::dot(vec3<T>(hit.position) - from.origin, from.direction);
-    return is_finite(along) && along >= -error_of(hit, from.origin);
+    return is_finite(along) && along >= -error;
 }
 
 /// Whether a hit can be trusted: finite place, unit normal, not behind the ray.
 template <Hit H, typename T>
+[[nodiscard]] bool is_sound(const H& hit, const ray<T>& from, T error) {
+    return is_placed(hit, from, error) && is_direction(vec3<T>(hit.normal));
+}
+template <Hit H, typename T>
 [[nodiscard]] bool is_sound(const H& hit, const ray<T>& from) {
-    return is_placed(hit, from) && is_direction(vec3<T>(hit.normal));
+    return is_sound(hit, from, error_of(hit, from.origin));
+}
+
+/// What is wrong with a hit that is not sound: its normal, or else its place.
+template <Hit H>
+[[nodiscard]] host_fault fault_of(const H& hit) {
+    return is_direction(vec3<hit_scalar<H>>(hit.normal)) ? host_fault::place : host_fault::normal;
 }
 
 /// Most surfaces that a path meets before roulette may end it even where nothing is absorbed.
@@ -102,7 +112,7 @@ template <Emitter Lights, Numbers N, Spectrum S, std::floating_point T>
 
 /// Scatters a particle at `hit`, its surface number `bounce`; false where it ends.
 template <lobe_set Possible = lobe_set::all, Surface H, Numbers N, Spectrum S, std::floating_point T>
-[[nodiscard]] bool scatter_photon(const H& hit, const N& numbers, std::uint32_t bounce, photon_state<S, T>& at,
+[[nodiscard]] bool scatter_photon(const H& hit, T error, const N& numbers, std::uint32_t bounce, photon_state<S, T>& at,
                                   energy_ledger<S>& ledger) {
     using B = band_of<S>;
     const vec3<T> wo = -at.path.direction;
@@ -120,7 +130,7 @@ template <lobe_set Possible = lobe_set::all, Surface H, Numbers N, Spectrum S, s
     }
     at.power = scattered * (1 / q);
     at.history = after(at.history, next->lobe);
-    at.path = {lift(vec3<T>(hit.position), vec3<T>(hit.normal), wi, error_of(hit, at.path.origin)), wi};
+    at.path = {lift(vec3<T>(hit.position), vec3<T>(hit.normal), wi, error), wi};
     return true;
 }
 
@@ -138,8 +148,8 @@ void walk_photon(const World& scene, const Lights& lights, const N& numbers, std
     for (std::uint32_t bounce = 1; going; ++bounce) {
         const auto hit = scene.intersect(at.path);
         if (!hit) { return void(detail::book(ledger.escaped, ledger.power_escaped, at.power)); }
-        if (!is_placed(*hit, at.path)) { return void(detail::drop(ledger, host_fault::place, at.power)); }
-        if (!is_direction(vec3<T>(hit->normal))) { return void(detail::drop(ledger, host_fault::normal, at.power)); }
+        const T error = error_of(*hit, at.path.origin);
+        if (!is_sound(*hit, at.path, error)) { return void(detail::drop(ledger, fault_of(*hit), at.power)); }
         ++ledger.bounces;
         if (any(hit->lobes(), lobe_set::smooth) && !land(*hit, vec3<T>(-at.path.direction), at.power, at.history)) {
             return void(detail::book(ledger.unneeded, ledger.power_unneeded, at.power));
@@ -147,7 +157,7 @@ void walk_photon(const World& scene, const Lights& lights, const N& numbers, std
         if (most_bounces != 0 && bounce > most_bounces) {
             return void(detail::book(ledger.capped, ledger.power_capped, at.power));
         }
-        going = detail::scatter_photon<static_lobes<World>>(*hit, numbers, bounce, at, ledger);
+        going = detail::scatter_photon<static_lobes<World>>(*hit, error, numbers, bounce, at, ledger);
     }
 }
 

@@ -29,7 +29,8 @@ struct lambert {
     }
 
     template <Sampler R>
-    [[nodiscard]] std::optional<scatter_sample<S, T>> sample(const vec3<T>& wo, R& random, lobe_set asked) const {
+    [[nodiscard, gnu::always_inline]] std::optional<scatter_sample<S, T>> sample(const vec3<T>& wo, R& random,
+                                                                                 lobe_set asked) const {
         if (!any(asked, lobes())) { return std::nullopt; }
         const auto u = random.next_2d();
         const vec3<T> local = cosine_hemisphere(vec2<T>{T(u.x), T(u.y)});

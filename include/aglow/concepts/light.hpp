@@ -58,10 +58,16 @@ concept Illuminator = requires(const L& light, vec3<scalar_of<L>> point, random_
     { light.illuminate(point, random)->pdf } -> std::convertible_to<scalar_of<L>>;
 };
 
+/// Whether `lights` can shine from beyond the scene.
+template <typename L, typename T>
+concept ShinesFromBeyond = requires(const L& lights, const vec3<T>& direction) {
+    lights.escaped(direction);
+};
+
 /// Radiance from beyond the scene, from `direction`; black where the lights have no `escaped`.
 template <Spectrum S, typename L, std::floating_point T>
 [[nodiscard]] S escaped_radiance(const L& lights, const vec3<T>& direction) {
-    if constexpr (requires { lights.escaped(direction); }) {
+    if constexpr (ShinesFromBeyond<L, T>) {
         return lights.escaped(direction);
     } else {
         return {};

@@ -31,9 +31,14 @@ struct path_key {
     return mix((a ^ 0x9e3779b97f4a7c15u) * 0xd1342543de82ef95u + b);
 }
 
+[[nodiscard]] constexpr std::uint64_t mix(const path_key& key) { return mix(mix(key.seed, key.pass), key.path); }
+
+/// The word of one decision of the path whose own word is `path`.
+[[nodiscard]] constexpr std::uint64_t mix(std::uint64_t path, std::uint32_t bounce, purpose why) {
+    return mix(path, (std::uint64_t{bounce} << 32) | static_cast<std::uint32_t>(why));
+}
 [[nodiscard]] constexpr std::uint64_t mix(const path_key& key, std::uint32_t bounce, purpose why) {
-    const std::uint64_t where = (std::uint64_t{bounce} << 32) | static_cast<std::uint32_t>(why);
-    return mix(mix(mix(key.seed, key.pass), key.path), where);
+    return mix(mix(key), bounce, why);
 }
 
 /// The upper bits of `word` as a number in [0, 1), never 1.
@@ -70,10 +75,10 @@ template <std::floating_point T>
 class random_numbers {
 public:
     using scalar = T;
-    explicit constexpr random_numbers(const path_key& key) : key_{key} {}
+    explicit constexpr random_numbers(const path_key& key) : key_{key}, word_{mix(key)} {}
 
     [[nodiscard]] constexpr random_sampler<T> at(std::uint32_t bounce, purpose why) const {
-        return random_sampler<T>{mix(key_, bounce, why)};
+        return random_sampler<T>{mix(word_, bounce, why)};
     }
 
     /// The numbers of a path that branches off this one, such as gather ray `branch`.
@@ -83,6 +88,7 @@ public:
 
 private:
     path_key key_;
+    std::uint64_t word_;  ///< of the path: mixed once, however many decisions it comes to
 };
 
 }  // namespace aglow

@@ -24,7 +24,7 @@ template <typename T>
 
 /// `point` moved by `error` along `normal` to the side that `direction` leaves on.
 template <typename T>
-[[nodiscard]] vec3<T> lift(const vec3<T>& point, const vec3<T>& normal, const vec3<T>& direction, T error) {
+[[nodiscard]] inline vec3<T> lift(const vec3<T>& point, const vec3<T>& normal, const vec3<T>& direction, T error) {
     return point + normal * (glm::dot(normal, direction) < 0 ? -error : error);
 }
 
