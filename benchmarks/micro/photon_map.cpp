@@ -1,5 +1,6 @@
 // Photon maps and irradiance points: how long one estimate takes over the number of photons.
 #include <aglow/core/parallel.hpp>
+#include <aglow/estimators/compact_photon.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
 #include <aglow/estimators/photon_map.hpp>
 
@@ -12,6 +13,7 @@ using micro::point;
 using micro::rgb;
 using micro::wall_place;
 using photon_map = aglow::photon_map<rgb, float>;
+using compact_map = aglow::photon_map<rgb, float, aglow::compact_photon<rgb>>;
 using irradiance_points = aglow::irradiance_points<rgb, float>;
 
 constexpr std::int64_t largest = 10'000'000;
@@ -30,8 +32,9 @@ const std::vector<aglow::landed_photon<rgb, float>>& photons(std::int64_t n) {
         return landed;
     });
 }
-const photon_map& map_of(std::int64_t n) {
-    return micro::kept(n, [n](std::size_t count) { return photon_map{photons(n), 1 / static_cast<float>(count)}; });
+template <typename Map>
+const Map& map_of(std::int64_t n) {
+    return micro::kept(n, [n](std::size_t count) { return Map{photons(n), 1 / static_cast<float>(count)}; });
 }
 const irradiance_points& points_of(std::int64_t n) {
     return micro::kept(n, [](std::size_t count) {
@@ -44,11 +47,12 @@ const irradiance_points& points_of(std::int64_t n) {
     });
 }
 
+template <typename Map>
 void build(benchmark::State& state, unsigned threads) {
     const auto& landed = photons(state.range(0));
     std::size_t memory = 0;
     for (auto _ : state) {
-        const photon_map map{landed, 1.0f, aglow::own_threads{threads}};
+        const Map map{landed, 1.0f, aglow::own_threads{threads}};
         memory = map.memory();
         benchmark::DoNotOptimize(memory);
     }
@@ -57,8 +61,9 @@ void build(benchmark::State& state, unsigned threads) {
     micro::count_bytes(state, memory, landed.size());
 }
 
+template <typename Map>
 void estimate(benchmark::State& state, aglow::density_options options, bool coherent) {
-    const photon_map& map = map_of(state.range(0));
+    const Map& map = map_of<Map>(state.range(0));
     if (options.count == 0) { options.max_radius = micro::wall_radius(50, map.size()); }
     micro::round_trip<wall_place> trip{micro::wall_questions(coherent)};
     std::uint64_t used = 0;
@@ -69,6 +74,7 @@ void estimate(benchmark::State& state, aglow::density_options options, bool cohe
         benchmark::DoNotOptimize(found.value);
     }
     micro::count_queries(state);
+    micro::count_bytes(state, map.memory(), map.size());
     state.counters["photons"] = static_cast<double>(used) / static_cast<double>(state.iterations());
 }
 
@@ -86,19 +92,26 @@ void read_point(benchmark::State& state, bool coherent) {
 const bool asked = [] {
     const auto over_sizes = [](benchmark::internal::Benchmark* question) { return micro::sizes(question, largest); };
     for (const unsigned threads : {1u, 2u}) {
-        over_sizes(ask("photon_map/how_long_does_a_build_take/threads_" + std::to_string(threads), build, threads))
-            ->Unit(benchmark::kMillisecond)
-            ->UseRealTime()
-            ->Complexity(benchmark::oNLogN);
+        const auto timed = [&](const std::string& what, auto question) {
+            over_sizes(ask(what + "/how_long_does_a_build_take/threads_" + std::to_string(threads), question, threads))
+                ->Unit(benchmark::kMillisecond)
+                ->UseRealTime()
+                ->Complexity(benchmark::oNLogN);
+        };
+        timed("photon_map", build<photon_map>);
+        timed("compact_photon", build<compact_map>);
     }
     for (const bool coherent : {false, true}) {
         const std::string order = coherent ? "/coherent" : "/random";
         for (const std::uint32_t k : {50u, 200u}) {
-            over_sizes(ask("photon_map/how_long_does_an_estimate_from_" + std::to_string(k) + "_take" + order, estimate,
-                           aglow::density_options{.count = k}, coherent))
+            const std::string question = "/how_long_does_an_estimate_from_" + std::to_string(k) + "_take" + order;
+            const aglow::density_options nearest{.count = k};
+            over_sizes(ask("photon_map" + question, estimate<photon_map>, nearest, coherent))
+                ->Complexity(benchmark::oLogN);
+            over_sizes(ask("compact_photon" + question, estimate<compact_map>, nearest, coherent))
                 ->Complexity(benchmark::oLogN);
         }
-        over_sizes(ask("photon_map/how_long_does_an_estimate_within_a_radius_take" + order, estimate,
+        over_sizes(ask("photon_map/how_long_does_an_estimate_within_a_radius_take" + order, estimate<photon_map>,
                        aglow::density_options{.count = 0}, coherent))
             ->Complexity(benchmark::oLogN);
         over_sizes(ask("irradiance_points/how_long_does_one_reading_take" + order, read_point, coherent))

@@ -9,10 +9,12 @@
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/octahedral.hpp>
 #include <aglow/core/packed_direction.hpp>
+#include <aglow/core/packed_place.hpp>
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/random.hpp>
 #include <aglow/core/ray.hpp>
 #include <aglow/core/roulette.hpp>
+#include <aglow/core/shared_exponent.hpp>
 #include <aglow/core/simd.hpp>
 #include <aglow/core/simd_avx2.hpp>
 #include <aglow/core/simd_avx512.hpp>
@@ -54,6 +56,7 @@
 
 // estimators: light from what was stored
 #include <aglow/estimators/compact_gradients.hpp>
+#include <aglow/estimators/compact_photon.hpp>
 #include <aglow/estimators/density.hpp>
 #include <aglow/estimators/edge_derivatives.hpp>
 #include <aglow/estimators/estimate.hpp>

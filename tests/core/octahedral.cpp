@@ -24,6 +24,7 @@ double angle(const vec3<T>& a, const vec3<T>& b) {
 }  // namespace
 
 static_assert(sizeof(octahedral) == 4);
+static_assert(sizeof(aglow::coarse_octahedral) == 2);
 
 TEMPLATE_TEST_CASE("octahedral: a million directions read back within the stated angle, and some are near it", "",
                    float, double) {
@@ -72,4 +73,26 @@ TEST_CASE("octahedral: what is read back is unit") {
         const vec3<float> v = octahedral{aglow::uniform_sphere(random.next_2d())}.direction<float>();
         REQUIRE(std::abs(aglow::length2(v) - 1) <= 4 * std::numeric_limits<float>::epsilon());
     }
+}
+
+TEST_CASE("octahedral: two bytes read back within their stated angle, without a tilt, and a sign needs no root") {
+    aglow::random_sampler<double> random{3};
+    double worst = 0;
+    vec3<double> tilt{};
+    bool same_side = true;
+    const int count = 200'000;
+    for (int i = 0; i < count; ++i) {
+        const vec3<double> v = aglow::uniform_sphere(random.next_2d());
+        const vec3<double> n = aglow::uniform_sphere(random.next_2d());
+        const aglow::coarse_octahedral packed{v};
+        const vec3<double> back = packed.direction<double>();
+        worst = std::max(worst, angle(v, back));
+        tilt += back - v;
+        same_side = same_side && (glm::dot(packed.along<double>(), n) > 0) == (glm::dot(back, n) > 0);
+    }
+    // Half a step, as above: sqrt(18) / 254.
+    CHECK(worst <= 0.0168);
+    CHECK(worst >= 0.015);
+    CHECK(glm::length(tilt) / count < 4 * 0.0168 / std::sqrt(double(count)));
+    CHECK(same_side);
 }

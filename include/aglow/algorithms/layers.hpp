@@ -43,10 +43,10 @@ template <lobe_set Possible = lobe_set::all, Surface H, typename Irradiance>
 }
 
 /// Layer: a photon map looked at directly, on diffuse lobes.
-template <Spectrum S, std::floating_point T>
+template <Spectrum S, std::floating_point T, typename Item = photon<S>>
 class map_layer {
 public:
-    explicit map_layer(const photon_map<S, T>& map, const density_options& options = {})
+    explicit map_layer(const photon_map<S, T, Item>& map, const density_options& options = {})
         : map_{map}, options_{options} {}
     /// A map that knows how sure its flux is.
     explicit map_layer(const traced_map<S, T>& map, const density_options& options = {})
@@ -64,7 +64,7 @@ public:
     }
 
 private:
-    const photon_map<S, T>& map_;
+    const photon_map<S, T, Item>& map_;
     density_options options_;
     shared_error shared_{};
 };

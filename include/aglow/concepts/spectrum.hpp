@@ -42,6 +42,20 @@ concept Spectrum = std::regular<S> && requires(const S& a, const S& b) {
 template <Spectrum S>
 using band_of = decltype(max_component(S{}));
 
+/// What very many of a spectrum are summed in: double where it is ours to choose, the host's own as it is.
+template <typename S>
+struct long_sum {
+    using type = S;
+};
+template <>
+struct long_sum<float> {
+    using type = double;
+};
+template <>
+struct long_sum<vec3<float>> {
+    using type = vec3<double>;
+};
+
 /// Whether every band is finite and none is negative: the test at the door of every sum.
 template <Spectrum S>
 [[nodiscard]] constexpr bool is_radiance(const S& a) {

@@ -4,21 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/vec.hpp>
 
 namespace aglow {
 
-/// A unit direction in four bytes, off by at most 6.5e-5 rad: the octahedral map with 16 bits an axis
-/// (Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit Vectors).
-class octahedral {
+/// A unit direction as two signed integers of type `I`: the octahedral map (Cigolle et al. 2014, A Survey of Efficient
+/// Representations for Independent Unit Vectors), read back at the centre of its cell.
+template <typename I>
+class basic_octahedral {
 public:
-    octahedral() = default;
+    basic_octahedral() = default;
 
     /// Expects `v` of any length but zero, finite.
     template <typename T>
-    explicit octahedral(const vec3<T>& v) {
+    explicit basic_octahedral(const vec3<T>& v) {
         const T sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
         T x = v.x / sum;
         T y = v.y / sum;
@@ -39,8 +41,8 @@ public:
     /// The place on the unfolded octahedron, in [-1, 1].
     template <typename T>
     [[nodiscard]] vec2<T> folded() const {
-        // Rounds so that 32767 steps are one.
-        return {static_cast<T>(x_) * (T(1) / T(32767)), static_cast<T>(y_) * (T(1) / T(32767))};
+        // Rounds so that the largest number of steps is one.
+        return {static_cast<T>(x_) * (T(1) / T(largest)), static_cast<T>(y_) * (T(1) / T(largest))};
     }
     /// The direction of such a place.
     template <typename T>
@@ -53,20 +55,37 @@ public:
         return {x * scale, y * scale, z * scale};
     }
 
-    friend bool operator==(const octahedral&, const octahedral&) = default;
+    /// The direction times a length of its own, without a root or a division: for those who ask for a sign.
+    template <typename T>
+    [[nodiscard]] vec3<T> along() const {
+        const int z = largest - std::abs(int{x_}) - std::abs(int{y_});
+        const int fold = std::max(0, -z);
+        const int x = x_ - (x_ < 0 ? -fold : fold);
+        const int y = y_ - (y_ < 0 ? -fold : fold);
+        return {static_cast<T>(x), static_cast<T>(y), static_cast<T>(z)};
+    }
+
+    friend bool operator==(const basic_octahedral&, const basic_octahedral&) = default;
 
 private:
+    static constexpr I largest = std::numeric_limits<I>::max();
+
     template <typename T>
     static T sign(T x) {
         return x < 0 ? T(-1) : T(1);
     }
     template <typename T>
-    static std::int16_t quantise(T x) {
-        return static_cast<std::int16_t>(std::lround(std::clamp(x, T(-1), T(1)) * T(32767)));
+    static I quantise(T x) {
+        return static_cast<I>(std::lround(std::clamp(x, T(-1), T(1)) * T(largest)));
     }
 
-    std::int16_t x_{0};
-    std::int16_t y_{0};
+    I x_{0};
+    I y_{0};
 };
+
+/// Four bytes, off by at most 6.5e-5 rad.
+using octahedral = basic_octahedral<std::int16_t>;
+/// Two bytes, off by at most 0.0168 rad.
+using coarse_octahedral = basic_octahedral<std::int8_t>;
 
 }  // namespace aglow

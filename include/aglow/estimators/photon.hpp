@@ -1,6 +1,7 @@
 // What is remembered of a particle that landed: how much power it brought, and from where.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 #include <aglow/concepts/spectrum.hpp>
@@ -21,6 +22,22 @@ struct photon {
     [[nodiscard]] bool arrived_on(const vec3<T>& n) const {
         return glm::dot(wi.template direction<T>(), n) > 0;
     }
+    /// Whether its surface's normal is within `cosine` of unit `n`.
+    template <typename T>
+    [[nodiscard]] bool faces(const vec3<T>& n, T cosine) const {
+        return glm::dot(normal.template direction<T>(), n) >= cosine;
+    }
+
+    // What a `PhotonItem` answers.
+    [[nodiscard]] const S& flux() const { return power; }
+    template <typename T>
+    [[nodiscard]] vec3<T> towards() const {
+        return wi.template direction<T>();
+    }
+    template <typename T>
+    [[nodiscard]] vec3<T> facing() const {
+        return normal.template direction<T>();
+    }
 };
 
 /// A photon and the place where it landed, as tracing hands it over.
@@ -28,6 +45,16 @@ template <Spectrum S, std::floating_point T>
 struct landed_photon {
     vec3<T> position{};
     photon<S> what{};
+};
+
+/// What a map may keep of a photon: its flux, where it came from and which way its surface faces.
+template <typename Item, typename S, typename T>
+concept PhotonItem = std::copyable<Item> && requires(const Item& item, const vec3<T>& n, T cosine) {
+    { item.flux() } -> std::convertible_to<S>;
+    { item.template towards<T>() } -> std::same_as<vec3<T>>;
+    { item.template facing<T>() } -> std::same_as<vec3<T>>;
+    { item.arrived_on(n) } -> std::same_as<bool>;
+    { item.faces(n, cosine) } -> std::same_as<bool>;
 };
 
 }  // namespace aglow
