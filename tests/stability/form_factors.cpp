@@ -9,6 +9,7 @@
 #include <aglow/algorithms/precompute_irradiance.hpp>
 #include <aglow/core/sobol.hpp>
 
+#include "../../examples/common/fresnel.hpp"
 #include "stability/analytic.hpp"
 #include "stability/closed_forms.hpp"
 #include "support/catch.hpp"
@@ -69,6 +70,88 @@ bool agrees(const std::vector<corner<T>>& p, double ulps = 16) {
     const auto truth = lambert_polygon(exact);
     return std::abs(static_cast<long double>(mine.irradiance) - truth.irradiance) <=
            static_cast<long double>(ulps) * std::numeric_limits<T>::epsilon() * truth.magnitude;
+}
+
+/// The overcast sky of CIE: three times as bright at the zenith as at the horizon.
+struct overcast_sky : support::no_light<double, double> {
+    [[nodiscard]] double escaped(const vec3<double>& w) const { return w.z > 0 ? (1 + 2 * w.z) / 3 : 0; }
+};
+
+/// A plane across `axis`, from `low` to `high` along the other two.
+quadric<double> piece(int axis, double at, const vec3<double>& low, const vec3<double>& high,
+                      const material<double>& made_of = {}) {
+    auto q = quadric<double>::plane(axis, at, made_of);
+    q.low = low;
+    q.high = high;
+    q.low[axis] = -endless<double>;
+    q.high[axis] = endless<double>;
+    return q;
+}
+
+/// A black wall across `axis` with a hole from `low` to `high`.
+std::vector<quadric<double>> wall_with_hole(int axis, double at, const vec3<double>& low, const vec3<double>& high) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const double far = endless<double>;
+    std::vector<quadric<double>> pieces;
+    for (const bool above : {false, true}) {
+        vec3<double> a{-far};
+        vec3<double> b{far};
+        (above ? a : b)[u] = above ? high[u] : low[u];
+        pieces.push_back(piece(axis, at, a, b));
+        a = vec3<double>{-far};
+        b = vec3<double>{far};
+        a[u] = low[u];
+        b[u] = high[u];
+        (above ? a : b)[v] = above ? high[v] : low[v];
+        pieces.push_back(piece(axis, at, a, b));
+    }
+    return pieces;
+}
+
+/// A black room behind the wall x = 0 with a window from `low` to `high`.
+std::vector<quadric<double>> room_with_window(const vec3<double>& low, const vec3<double>& high) {
+    const double far = endless<double>;
+    auto pieces = wall_with_hole(0, 0, low, high);
+    pieces.push_back(piece(0, -5, vec3<double>{-far}, vec3<double>{far}));
+    for (const double z : {0.0, 3.0}) { pieces.push_back(piece(2, z, {-far, -far, 0}, {0, far, 0})); }
+    for (const double y : {-4.0, 4.0}) { pieces.push_back(piece(1, y, {-far, 0, -far}, {0, 0, far})); }
+    return pieces;
+}
+
+/// Irradiance at `at` by rays through the hole, carried on by path tracing.
+sample_mean by_rays(const quadric_scene<double>& scene, const vec3<double>& at, const vec3<double>& n) {
+    const overcast_sky sky;
+    const path_tracer tracer{scene, sky};
+    const auto incoming = [&](const ray<double>& r, const random_numbers<double>& numbers) {
+        return tracer.incoming(r, numbers);
+    };
+    sample_mean mean;
+    for (std::uint64_t i = 0; i < 512; ++i) {
+        const gather_point<double> point{.position = at, .normal = n};
+        mean.add(gather_once(incoming, point, random_numbers<double>{{.path = i}}, hemisphere_shape{24, 48}));
+    }
+    return mean;
+}
+
+/// The same by quadrature over the hole: `seen` tells the radiance from a direction through one of its points.
+template <typename Seen>
+double through_hole(int axis, double at, const vec3<double>& low, const vec3<double>& high, const vec3<double>& x,
+                    const vec3<double>& n, const Seen& seen) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    return statistics::integral(low[u], high[u], 80, [&](double a) {
+        return statistics::integral(low[v], high[v], 80, [&](double b) {
+            vec3<double> p{};
+            p[axis] = at;
+            p[u] = a;
+            p[v] = b;
+            const double d2 = distance2(p, x);
+            const vec3<double> w = (p - x) / std::sqrt(d2);
+            const double cosine = glm::dot(w, n);
+            return cosine > 0 ? seen(p, w) * cosine * std::abs(w[axis]) / d2 : 0.0;
+        });
+    });
 }
 
 }  // namespace
@@ -287,6 +370,80 @@ TEST_CASE("stability 33: the rooms of CIE 171 have the light that their geometry
                 const vec3<double> at{x, 0.5, 0};
                 CHECK(sampled(opening, at, up) == Approx(support::irradiance(at, up, edge)).epsilon(5e-3));
             }
+        }
+    }
+    const auto overcast = [](const vec3<double>& w) { return w.z > 0 ? (1 + 2 * w.z) / 3 : 0; };
+    const auto clear = [&](const vec3<double>&, const vec3<double>& w) { return overcast(w); };
+    // Of both polarisations, through both sides of a pane, with all that goes back and forth in it.
+    const auto pane = [&](double cosine) {
+        const double r = host::fresnel(cosine, 1.5);
+        return (1 - r) / (1 + r);
+    };
+    SECTION("5.9 and 5.10: an overcast sky through a roof, open and glazed") {
+        const vec3<double> low{-0.5, -0.5, 0};
+        const vec3<double> high{0.5, 0.5, 0};
+        quadric_scene<double> open{wall_with_hole(2, 3, low, high)};
+        auto glazed = open;
+        glazed.shapes.push_back(piece(2, 3, low, high, {.glass = 1.5}));
+        glazed.shapes.push_back(piece(2, 3 + 1e-6, low, high, {.glass = 1.5}));
+        glazed.shapes[4].linear.z = -1;
+        glazed.shapes[4].constant = 3;
+        for (const double x : {-1.0, 0.0, 1.5}) {
+            const vec3<double> at{x, 0.25, 0};
+            CHECK(by_rays(open, at, up).agrees(through_hole(2, 3, low, high, at, up, clear)));
+            const auto dimmed = [&](const vec3<double>& p, const vec3<double>& w) { return pane(w.z) * clear(p, w); };
+            CHECK(by_rays(glazed, at, up).agrees(through_hole(2, 3, low, high, at, up, dimmed), 4, 1e-4));
+        }
+    }
+    SECTION("5.11 and 5.12: the same sky and the ground under it, through a window, open and glazed") {
+        const vec3<double> low{0, -1, 1};
+        const vec3<double> high{0, 1, 2};
+        // The ground before an endless wall sees half of the sky, 7 pi / 18 of the zenith's radiance.
+        const double far = endless<double>;
+        const double rho = 0.3;
+        auto shapes = room_with_window(low, high);
+        shapes.push_back(piece(2, 0, {1e-9, -far, 0}, {far, far, 0}, {.diffuse = rho}));
+        const quadric_scene<double> open{shapes};
+        quadric_scene<double> glazed{shapes};
+        glazed.shapes.push_back(piece(0, 0, low, high, {.glass = 1.5}));
+        glazed.shapes.push_back(piece(0, 1e-6, low, high, {.glass = 1.5}));
+        glazed.shapes[shapes.size()].linear.x = -1;
+        const auto outside = [&](const vec3<double>&, const vec3<double>& w) {
+            return w.z > 0 ? overcast(w) : rho * 7 / 18;
+        };
+        for (const auto& [at, n] :
+             {std::pair{vec3<double>{-1, 0.25, 0.8}, up}, {{-2, 0, 2.5}, -up}, {{-1.5, 0.5, 1.2}, {1, 0, 0}}}) {
+            const auto dimmed = [&](const vec3<double>& p, const vec3<double>& w) {
+                return pane(std::abs(w.x)) * outside(p, w);
+            };
+            CHECK(by_rays(open, at, n).agrees(through_hole(0, 0, low, high, at, n, outside)));
+            CHECK(by_rays(glazed, at, n).agrees(through_hole(0, 0, low, high, at, n, dimmed), 4, 1e-4));
+        }
+    }
+    SECTION("5.13 and 5.14: through a window under a roof that juts out, and behind a lower house across the street") {
+        const vec3<double> low{0, -1, 1};
+        const vec3<double> high{0, 1, 2};
+        const double far = endless<double>;
+        auto jutting = room_with_window(low, high);
+        jutting.push_back(piece(2, 2.2, {0, -far, 0}, {1, far, 0}));
+        auto street = room_with_window(low, high);
+        street.push_back(piece(0, 6, {0, -far, -far}, {0, far, 4}, {.glow = 0.2}));
+        const auto under_roof = [&](const vec3<double>& p, const vec3<double>& w) {
+            const double x = p.x + (2.2 - p.z) / w.z * w.x;
+            return w.z > 0 && x < 1 ? 0.0 : overcast(w);
+        };
+        const auto across = [&](const vec3<double>& p, const vec3<double>& w) {
+            return p.z + 6 / w.x * w.z < 4 ? 0.2 : overcast(w);
+        };
+        for (const auto& [at, n] :
+             {std::pair{vec3<double>{-1, 0.25, 0.8}, up}, {{-3, 0, 0.8}, up}, {{-1.5, 0.5, 1.2}, {1, 0, 0}}}) {
+            CHECK(by_rays({jutting}, at, n).agrees(through_hole(0, 0, low, high, at, n, under_roof), 4, 1e-3));
+            // What glows is met by gather rays at their first hit, where the asker would have looked himself.
+            const auto glow = [&](const vec3<double>& p, const vec3<double>& w) {
+                return p.z + 6 / w.x * w.z < 4 ? 0.0 : overcast(w);
+            };
+            CHECK(by_rays({street}, at, n).agrees(through_hole(0, 0, low, high, at, n, glow), 4, 1e-3));
+            CHECK(through_hole(0, 0, low, high, at, n, across) >= through_hole(0, 0, low, high, at, n, glow));
         }
     }
 }

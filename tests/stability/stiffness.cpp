@@ -1,9 +1,10 @@
-// Rows 2 and 3, and the meter that says how stiff a scene is.
+// Rows 2, 3 and 13, and the meter that says how stiff a scene is.
 #include <aglow/algorithms/stiffness.hpp>
 
 #include <cmath>
 #include <limits>
 
+#include <aglow/algorithms/gather.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
 
@@ -116,5 +117,57 @@ TEST_CASE("stiffness: where a photon map saw nothing of a room behind a pinhole,
         const auto e = maps.indirect.irradiance(at, -n);
         CAPTURE(e.value, e.error, truth, e.radius);
         CHECK(std::abs(e.value - truth) <= e.error);
+    }
+}
+
+TEST_CASE("stability 13: where light mixes through a millionth, a gather and a photon map tell an error that covers") {
+    const double port = 1e-6;
+    const blind<double> nobody;
+    SECTION("a record gathered in the second sphere, the first one glowing") {
+        struct {
+            double rho;
+            hemisphere_shape rays;
+        } const cases[] = {{0.9, {500, 1000}}, {0.999999, {3, 4}}};
+        for (const auto& [rho, rays] : cases) {
+            const room scene = kissing(rho, port);
+            const auto incoming = [&](const ray<double>& r, const random_numbers<double>& n) {
+                return walk_path(scene, nobody, r, n);
+            };
+            const gather_point<double> at{.position = {0, 0, 2 - 4e-6}, .normal = {0, 0, -1}};
+            hemisphere_grid<double, double> grid{rays};
+            (void)gather_hemisphere(incoming, at, random_numbers<double>{{.seed = 5}}, rays, grid);
+            const double exact = stability::pi * kissing_spheres(rho, port).second;
+            const double error = 2 * relative_noise(grid) * grid.irradiance();
+            CAPTURE(rho, grid.irradiance(), error, exact);
+            CHECK(grid.irradiance() > 0);
+            CHECK(std::abs(grid.irradiance() - exact) <= error);
+        }
+    }
+    SECTION("a photon map of the few paths that there is time for, each of them a million photons long") {
+        const double rho = 0.999999;
+        const support::bulb<double, double> below{.position = {0, 0, -0.9}, .intensity = 1};
+        const room scene = kissing(rho, port);
+        const double first = sphere_indirect(4 * stability::pi, rho, 1) / (1 - port);
+        // What is emitted goes half to either sphere, but for what the first keeps longer: B of the closed form, with
+        // the bulb's first strike as the walls' emission.
+        const double strike = 1;  // E of 1 W/sr at 1 m
+        const double in_first = kissing_spheres(rho, port).first * rho * strike;
+        const double in_second = kissing_spheres(rho, port).second * rho * strike;
+        CHECK(in_first + in_second == Approx(first).epsilon(1e-5));
+        for (const std::uint64_t seed : {1u, 2u, 3u}) {
+            const auto maps = trace_photons(
+                scene, below, {.indirect = 100, .pilot_paths = 1, .paths = {.indirect = 2}, .seed = seed});
+            for (const vec3<double> n : {vec3<double>{0, 0, 1}, vec3<double>{1, 0, 0}, vec3<double>{0, -1, 0}}) {
+                const auto here = maps.indirect.irradiance(vec3<double>{0, 0, -1 + 2e-6} - n, n);
+                const auto there = maps.indirect.irradiance(vec3<double>{0, 0, 1 - 2e-6} + n, -n);
+                // As every integrator takes it in: what the whole map may be off by, besides each look's own error.
+                const shared_error shared{.common = maps.indirect.common};
+                const double here_off = shared.on(here.value, here.error).error;
+                const double there_off = shared.on(there.value, there.error).error;
+                CAPTURE(seed, maps.indirect.size(), here.value, here_off, in_first, there.value, there_off, in_second);
+                CHECK(std::abs(here.value - in_first) <= here_off);
+                CHECK(std::abs(there.value - in_second) <= there_off);
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 // The books of a particle simulation: where every emitted particle ended, to the last one.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -52,6 +53,19 @@ struct energy_ledger {
         return *this;
     }
 };
+
+/// The books of paths `first` to `last`, kept by `walk(path, ledger)`: those of few at a time are added to the others,
+/// since a long sum of floats loses what is small beside it.
+template <Spectrum S, typename Walk>
+[[nodiscard]] energy_ledger<S> kept_books(std::size_t first, std::size_t last, Walk&& walk) {
+    energy_ledger<S> all;
+    while (first < last) {
+        energy_ledger<S> few;
+        for (const std::size_t end = std::min(last, first + 32); first < end; ++first) { walk(first, few); }
+        all += few;
+    }
+    return all;
+}
 
 /// The books of all `ledgers` together, joined two by two: one long sum of floats would stand still.
 template <Spectrum S>

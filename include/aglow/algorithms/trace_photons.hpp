@@ -33,6 +33,17 @@ struct photon_block {
     energy_ledger<S> ledger{};
 };
 
+/// The relative noise of the sum of `paths` numbers: half the way to where the sum may lie with 95 % confidence. Few
+/// paths that bounce for long, as between white walls, bring many photons and know little.
+[[nodiscard]] inline double shared_noise(double paths, double sum, double sum2) {
+    const double degrees = std::max(1.0, paths - 1);
+    // At or above Student's quantile over 2, for any number of degrees of freedom.
+    const double few = 1 + 1.2 / degrees + 4.2 / square(degrees);
+    if (paths < 2) { return few; }
+    const double excess = paths * (sum2 / sum / sum) - 1;
+    return few * std::sqrt(std::max(0.0, excess) / degrees);
+}
+
 /// Traces the photons of one call of `trace_photons`, step by step.
 template <Scene World, Emitter Lights, Executor Run>
 class photon_tracer {
@@ -150,7 +161,9 @@ private:
         const halton_scrambling table{options_.seed, pass};
         for_each_block(run_, count, block_size, [&](std::size_t b, std::size_t first, std::size_t last) {
             if (stopped_) { return; }
-            for (std::size_t i = first; i < last; ++i) { trace_path(halton_numbers<T>{table, i}, i, paths, blocks[b]); }
+            blocks[b].ledger = kept_books<S>(first, last, [&](std::size_t i, energy_ledger<S>& ledger) {
+                trace_path(halton_numbers<T>{table, i}, i, paths, blocks[b], ledger);
+            });
             if (piloting_ || !options_.progress) { return; }
             const std::size_t so_far = done += last - first;
             if (!options_.progress(static_cast<double>(so_far) / static_cast<double>(count))) { stopped_ = true; }
@@ -158,10 +171,11 @@ private:
         return blocks;
     }
 
-    void trace_path(const halton_numbers<T>& numbers, std::size_t i, const kinds& paths, photon_block<S, T>& into) {
+    void trace_path(const halton_numbers<T>& numbers, std::size_t i, const kinds& paths, photon_block<S, T>& into,
+                    energy_ledger<S>& ledger) {
         for (std::size_t kind = 0; kind < 4; ++kind) { into.paths[kind] += i < paths[kind] ? 1 : 0; }
         const std::array<double, 4> before = into.flux;
-        walk_photon(scene_, lights_, numbers, most_bounces_, into.ledger,
+        walk_photon(scene_, lights_, numbers, most_bounces_, ledger,
                     [&](const auto& hit, const vec3<T>& wi, const S& power, photon_history history) {
                         const std::size_t kind = map_of(history);
                         if (i < paths[kind]) { store(hit, wi, power, into, kind); }
@@ -212,7 +226,8 @@ private:
         const T scale = map.paths == 0 ? T(0) : T(1) / static_cast<T>(map.paths);
         static_cast<photon_map<S, T>&>(map) = photon_map<S, T>{photons, scale, run_};
         if (flux > 0) {
-            map.common = std::sqrt(std::max(0.0, flux2 - flux * flux / static_cast<double>(map.paths))) / flux;
+            map.common = detail::shared_noise(static_cast<double>(map.paths), flux, flux2);
+            map.come_in_bunches(static_cast<double>(map.size()) * square(map.common));
         }
         map.wanted = wanted_[k];
         map.why = why_[k];
