@@ -30,8 +30,9 @@ public:
 
     /// Whether there is somebody to ask.
     explicit operator bool() const { return ask_ != nullptr; }
-    /// The answer. Expects a callable.
-    bool operator()(Argument argument) const { return ask_(held_.get(), argument); }
+    /// The answer; yes where there is nobody to ask, who may be asked all the same: a `std::function` that was made of
+    /// such a callback does not look empty.
+    bool operator()(Argument argument) const { return !ask_ || ask_(held_.get(), argument); }
 
 private:
     std::shared_ptr<void> held_{};
