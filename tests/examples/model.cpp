@@ -248,7 +248,7 @@ TEST_CASE("model: a face looks to the side of its normals, whatever the order of
     CHECK_FALSE(scene.lights().illuminate({0.5f, -2, 0.5f}, random));
 }
 
-TEST_CASE("model: a PNG colours the matte part, upright; one that is missing is noted and leaves the plain colour") {
+TEST_CASE("model: a PNG colours the matte part, upright, and a missing one is noted and leaves it plain") {
     if (!host::has_png()) { return; }
     const files dir;
     host::picture four{2, 2};
