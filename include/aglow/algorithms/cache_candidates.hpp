@@ -4,12 +4,12 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include <aglow/algorithms/fill_cache.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/callback.hpp>
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/sobol.hpp>
 
@@ -22,7 +22,7 @@ struct view_options {
     std::uint32_t looks{1};         ///< rays per pixel; more find more of what mirrors and glass show
     std::uint32_t most_bounces{8};  ///< surfaces followed through mirrors and gloss; the picture itself goes on further
     std::uint64_t seed{0};
-    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
+    callback<double> progress{};  ///< told the share done, from any thread; false stops early
 };
 
 namespace detail {

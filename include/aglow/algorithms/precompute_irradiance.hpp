@@ -7,12 +7,12 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/photon_options.hpp>
+#include <aglow/core/callback.hpp>
 #include <aglow/core/frame.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
@@ -25,7 +25,7 @@ struct irradiance_options {
     std::uint32_t shadow_rays{8};  ///< looks at the lights per point; 0 takes direct light from the direct map
     density_options density{};     ///< for the caustic and the indirect map
     std::uint64_t seed{0};
-    std::function<bool(double)> progress{};  ///< told the share done, from any thread; false stops early
+    callback<double> progress{};  ///< told the share done, from any thread; false stops early
 };
 
 namespace detail {
@@ -141,8 +141,7 @@ template <Spectrum S, std::floating_point T>
 /// Fills all points, block by block and far apart from one block to the next, and drops those that were not reached
 /// when `progress` said to stop.
 template <typename Point, typename Fill, Executor Run>
-void keep_filled(std::vector<Point>& points, const std::function<bool(double)>& progress, const Fill& fill,
-                 const Run& run) {
+void keep_filled(std::vector<Point>& points, const callback<double>& progress, const Fill& fill, const Run& run) {
     constexpr std::size_t block = 64;
     const std::size_t blocks = (points.size() + block - 1) / block;
     const std::size_t step = spread_step(blocks);

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <utility>
+
+#include <aglow/core/callback.hpp>
 
 namespace aglow {
 
@@ -25,7 +26,7 @@ struct preparation {
 
 /// A host's ear: told when a phase begins and of its progress, from any thread, one call at a time. False ends the
 /// phase early; what was found until then is used, and the next phase begins and asks again.
-using preparation_progress = std::function<bool(const preparation&)>;
+using preparation_progress = callback<const preparation&>;
 
 namespace detail {
 
@@ -36,7 +37,7 @@ public:
 
     /// Begins a phase: what is to be told the share done of it. `own` is told too, where the phase has such. Empty
     /// where nobody listens.
-    [[nodiscard]] std::function<bool(double)> phase(preparation_phase now, std::function<bool(double)> own = {}) {
+    [[nodiscard]] callback<double> phase(preparation_phase now, callback<double> own = {}) {
         if (!host_) { return own; }
         told_ = {now, 0};
         ended_ = false;
