@@ -7,9 +7,11 @@
 #include <aglow/core/random.hpp>
 
 #include "support/catch.hpp"
+#include "support/glowing_room.hpp"
 #include "support/occluded_light.hpp"
 
 using namespace aglow;
+using support::glowing_room;
 using support::occluded_light;
 using support::point3;
 
@@ -44,6 +46,53 @@ TEST_CASE("gradients: translation is the derivative of Lambert's formula, with a
             CHECK(glm::length(mean.translation - exact) < 0.025 * glm::length(exact));
         }
     }
+}
+
+TEST_CASE("gradients: near the corners of a room they are as steep as Lambert's formula, from few rays and close by") {
+    const glowing_room room;
+    const hemisphere_shape shape = hemisphere_of(400);
+    const gradient_weights<double> weights{shape};
+    for (const double x : {0.5, 0.9, 0.98}) {
+        const point3 here{x, 0.2, -1};
+        vec2<double> mean{0};
+        vec2<double> squares{0};
+        constexpr int runs = 400;
+        for (int i = 0; i < runs; ++i) {
+            const auto g = gradients(support::seen_in(room, here, shape, static_cast<std::uint64_t>(i)), weights);
+            const vec2<double> one{g.translation.x, g.translation.y};
+            mean += one / double(runs);
+            squares += one * one / double(runs);
+        }
+        const vec2<double> exact = room.gradient(here);
+        const double chance = glm::length(glm::sqrt((squares - mean * mean) / double(runs)));
+        CAPTURE(x, mean.x, mean.y, exact.x, exact.y, chance);
+        CHECK(glm::length(mean - exact) < 0.04 * glm::length(exact) + 4 * chance);
+        CHECK(chance < 0.03 * glm::length(exact));
+    }
+}
+
+TEST_CASE("gradients: a wall that hides another moves the border, whichever way it faces") {
+    // To the left something black ends at distance 1, to the right a bright wall is 10 times as far. The border lies
+    // along y; moving towards it by 1 turns it by 1 a radian's worth at the zenith.
+    const hemisphere_shape shape{32, 100};
+    const gradient_weights<double> weights{shape};
+    const auto steepness = [&](const point3& facing) {
+        hemisphere_grid<double, double> grid{shape};
+        for (std::uint32_t k = 0; k < shape.sectors; ++k) {
+            for (std::uint32_t j = 0; j < shape.rings; ++j) {
+                const point3 d = hemisphere_direction<double>(shape, j, k, {0.5, 0.5});
+                const bool left = d.x < 0;
+                const point3 normal = left ? facing : point3{0, 0, -1};
+                grid.set(j, k, left ? 0 : 1, (left ? 1 : 10) / d.z, d, normal);
+            }
+        }
+        return gradients(grid, weights).translation.x;
+    };
+    // The edge of a half plane at height 1: E = pi/2 (1 + x / sqrt(1 + x²)) of what is right of it.
+    CHECK(steepness({0, 0, -1}) == Approx(pi<double> / 2).epsilon(0.03));
+    // The back of a roof whose ridge is that edge is as near where it ends.
+    CHECK(steepness(glm::normalize(point3{0.2, 0, -1})) == Approx(pi<double> / 2).epsilon(0.15));
+    CHECK(steepness(glm::normalize(point3{-0.2, 0, -1})) == Approx(pi<double> / 2).epsilon(0.15));
 }
 
 TEST_CASE("gradients: rotation is the derivative of Lambert's formula by the normal") {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include <aglow/core/random.hpp>
 #include <aglow/core/ray.hpp>
+#include <aglow/estimators/hemisphere.hpp>
 
 #include "support/polygon.hpp"
 
@@ -42,6 +44,13 @@ struct glowing_room {
         return sum;
     }
 
+    /// How irradiance changes along x and y on the wall at -z.
+    [[nodiscard]] aglow::vec2<double> gradient(const point3& x) const {
+        const double h = 1e-4 * size;
+        const auto at = [&](double dx, double dy) { return irradiance(x + point3{dx, dy, 0}, {0, 0, 1}).y; };
+        return {(at(h, 0) - at(-h, 0)) / (2 * h), (at(0, h) - at(0, -h)) / (2 * h)};
+    }
+
     /// Which wall a ray from inside meets, and how far away.
     template <typename T>
     [[nodiscard]] std::pair<int, T> meet(const aglow::ray<T>& r) const {
@@ -59,5 +68,23 @@ struct glowing_room {
         return {found, nearest};
     }
 };
+
+/// One jittered hemisphere of the second band at `x` on the wall at -z, whose axes are the world's.
+[[nodiscard]] inline aglow::hemisphere_grid<double, double> seen_in(const glowing_room& room, const point3& x,
+                                                                    const aglow::hemisphere_shape& shape,
+                                                                    std::uint64_t seed) {
+    aglow::hemisphere_grid<double, double> grid{shape};
+    aglow::random_sampler<double> random{aglow::mix(seed, 78)};
+    for (std::uint32_t k = 0; k < shape.sectors; ++k) {
+        for (std::uint32_t j = 0; j < shape.rings; ++j) {
+            const point3 d = aglow::hemisphere_direction<double>(shape, j, k, random.next_2d());
+            const auto [wall, distance] = room.meet(aglow::ray<double>{x, d});
+            point3 normal{0};
+            normal[wall / 2] = wall % 2 ? -1 : 1;
+            grid.set(j, k, room.glow[static_cast<std::size_t>(wall)].y, distance, d, normal);
+        }
+    }
+    return grid;
+}
 
 }  // namespace support

@@ -25,8 +25,8 @@
 
 namespace aglow {
 
-/// Answers gather rays: `incoming(ray, numbers)` gives something like `incoming_light`. `numbers` are the ray's own,
-/// for bounces from 1 on. Callable from many threads.
+/// Answers gather rays: `incoming(ray, numbers)` gives something like `incoming_light`; without its `normal`, gradients
+/// near corners are too steep. `numbers` are the ray's own, for bounces from 1 on. Callable from many threads.
 template <typename F, typename T, typename N>
 concept IncomingLight = std::floating_point<T> && Numbers<N> &&
     requires(const F& incoming, const ray<T>& r, const N& numbers) {
@@ -79,7 +79,11 @@ frame<T> gather_hemisphere(const Incoming& incoming, const gather_point<T>& at, 
             const vec3<T> towards = axes.to_world(hemisphere_direction<T>(shape, j, k, u));
             const ray<T> r{lift(at.position, at.normal, towards, at.position_error), towards};
             const auto seen = incoming(r, N{numbers.fork(branch++)});
-            grid.set(j, k, seen.radiance, static_cast<T>(seen.distance));
+            if constexpr (requires { seen.normal; }) {
+                grid.set(j, k, seen.radiance, static_cast<T>(seen.distance), towards, vec3<T>(seen.normal));
+            } else {
+                grid.set(j, k, seen.radiance, static_cast<T>(seen.distance));
+            }
         }
     }
     return axes;

@@ -240,7 +240,10 @@ private:
 
     /// What the surface sends out by itself.
     void take_in(const walk_stop<World>& stop) {
-        if (stop.bounce == 1) { result_.distance = stop.travelled; }
+        if (stop.bounce == 1) {
+            result_.distance = stop.travelled;
+            result_.normal = vec3<T>(stop.hit.normal);
+        }
         const S glow = emitted(stop.hit, stop.wo);
         if (is_radiance(glow) && is_black(glow)) { return; }
         add(glow * B(emission_share(at_, lights_, stop.hit, rule_, stop.bounce)));
@@ -265,7 +268,7 @@ private:
 
 }  // namespace detail
 
-/// Walks along `start` and returns the radiance that comes back along it, and the distance of the first hit.
+/// Walks along `start` and returns the radiance that comes back along it, and distance and normal of the first hit.
 ///
 /// `terminal(hit, wo, travelled, error, mirrored)` may end the walk with an optional `estimate` of the radiance that
 /// the diffuse lobes of `hit` send towards `wo`, direct light included; `travelled` is the way from the last

@@ -50,6 +50,15 @@ template <typename T>
     return {sine * std::cos(angle), sine * std::sin(angle), std::sqrt(cosine2)};
 }
 
+/// The tangent plane of what is seen in unit `direction`: its reciprocal distance there, and how that changes with the
+/// direction, which for a plane is linear: u(d) = u + slope . (d - direction), exactly. Without slope: a sphere around
+/// the eye, or nothing.
+template <std::floating_point T>
+struct seen_plane {
+    vec3<T> direction{};
+    vec3<T> slope{};
+};
+
 /// One sample per stratum: radiance and reciprocal hit distance. Knows no rays: whoever fills it decides where the
 /// light comes from. Local axes: z is the normal, sector 0 begins at x.
 template <Spectrum S, std::floating_point T>
@@ -68,6 +77,7 @@ public:
         rejected_ = 0;
         radiance_.assign(shape.count(), S{});
         inverse_distance_.assign(shape.count(), T(0));
+        planes_.assign(shape.count(), seen_plane<T>{});
     }
 
     [[nodiscard]] const hemisphere_shape& shape() const { return shape_; }
@@ -91,10 +101,25 @@ public:
         inverse_distance_[i] = inverse;
     }
 
+    /// The same for a surface with that `normal`, seen in that unit `direction`; both along any axes, the same for the
+    /// whole grid. A normal of zero is none.
+    void set(std::uint32_t ring, std::uint32_t sector, const S& radiance, T distance, const vec3<T>& direction,
+             const vec3<T>& normal) {
+        set(ring, sector, radiance, distance);
+        const std::size_t i = index(ring, sector);
+        const T cosine = glm::dot(normal, direction);
+        const vec3<T> slope = normal * (inverse_distance_[i] / cosine);
+        const bool known = std::abs(cosine) > T(1e-4) && is_finite(slope.x + slope.y + slope.z);
+        planes_[i] = {direction, known ? slope : vec3<T>{}};
+    }
+
     [[nodiscard]] std::span<const S> radiance() const { return radiance_; }
 
     /// Reciprocal distances, 0 where nothing was met.
     [[nodiscard]] std::span<const T> inverse_distance() const { return inverse_distance_; }
+
+    /// What is seen through the strata, as planes.
+    [[nodiscard]] std::span<const seen_plane<T>> planes() const { return planes_; }
 
     /// How many samples were turned away at `set`.
     [[nodiscard]] std::uint32_t rejected() const { return rejected_; }
@@ -149,6 +174,7 @@ private:
     std::uint32_t rejected_{0};
     std::vector<S> radiance_;
     std::vector<T> inverse_distance_;
+    std::vector<seen_plane<T>> planes_;
 };
 
 /// Standard error of `grid.irradiance()` relative to it, for the largest band; 0 for a black hemisphere.

@@ -1,9 +1,9 @@
 // How irradiance changes when the point moves and the normal turns, from the same samples as irradiance itself.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include <aglow/concepts/spectrum.hpp>
@@ -81,6 +81,24 @@ private:
 
 namespace detail {
 
+/// One over the distance of the border between two neighbouring strata: what the border moves by when the point does.
+/// Two planes that meet between the strata, as in the corner of a room, have their border where they meet; else the
+/// nearer one hides the other. Never nearer than the nearer stratum.
+template <std::floating_point T>
+[[nodiscard]] T border_between(T u, const seen_plane<T>& plane, T v, const seen_plane<T>& other) {
+    const vec3<T> way = other.direction - plane.direction;
+    const T u_there = u + glm::dot(plane.slope, way);
+    const T v_here = v - glm::dot(other.slope, way);
+    const T in_front = u - v_here;
+    const T in_front_there = u_there - v;
+    const T apart = in_front - in_front_there;
+    const bool meet = (in_front < 0) != (in_front_there < 0);
+    const bool alike = std::abs(in_front) + std::abs(in_front_there) < T(1e-3) * (u + v);
+    if (alike) { return (u + v) / 2; }
+    const T nearer = in_front > 0 ? (u + u_there) / 2 : (v + v_here) / 2;
+    return std::clamp(meet ? u + (u_there - u) * (in_front / apart) : nearer, T(0), std::max(u, v));
+}
+
 /// The sums over one sector of Ward & Heckbert's gradients, before they get their directions.
 template <Spectrum S>
 struct sector_sums {
@@ -90,17 +108,22 @@ struct sector_sums {
 };
 
 template <Spectrum S, std::floating_point T>
-[[nodiscard]] sector_sums<S> sum_sector(const gradient_weights<T>& weights, const S* l, const T* u, const S* l_before,
-                                        const T* u_before) {
+[[nodiscard]] sector_sums<S> sum_sector(const gradient_weights<T>& weights, const hemisphere_grid<S, T>& grid,
+                                        std::size_t here, std::size_t before) {
+    const S* l = grid.radiance().data() + here;
+    const T* u = grid.inverse_distance().data() + here;
+    const seen_plane<T>* plane = grid.planes().data() + here;
+    const S* l_before = grid.radiance().data() + before;
+    const T* u_before = grid.inverse_distance().data() + before;
+    const seen_plane<T>* plane_before = grid.planes().data() + before;
     sector_sums<S> sums;
     const auto& rings = weights.rings();
     for (std::size_t j = 0; j < rings.size(); ++j) {
-        // The nearer of two strata moves their border, hence the larger reciprocal.
-        const T turning = rings[j].turning * std::max(u[j], u_before[j]);
+        const T turning = rings[j].turning * border_between(u[j], plane[j], u_before[j], plane_before[j]);
         sums.turning = sums.turning + (l[j] + l_before[j] * T(-1)) * turning;
         sums.rotation = sums.rotation + l[j] * rings[j].rotation;
         if (j == 0) { continue; }
-        const T radial = rings[j].radial * std::max(u[j], u[j - 1]);
+        const T radial = rings[j].radial * border_between(u[j], plane[j], u[j - 1], plane[j - 1]);
         sums.radial = sums.radial + (l[j] + l[j - 1] * T(-1)) * radial;
     }
     return sums;
@@ -113,13 +136,11 @@ template <Spectrum S, std::floating_point T>
 template <Spectrum S, std::floating_point T>
 [[nodiscard]] irradiance_gradients<S> gradients(const hemisphere_grid<S, T>& grid, const gradient_weights<T>& weights) {
     const auto [rings, sectors] = grid.shape();
-    const S* l = grid.radiance().data();
-    const T* u = grid.inverse_distance().data();
     irradiance_gradients<S> sum;
     for (std::uint32_t k = 0; k < sectors; ++k) {
         const std::size_t here = std::size_t{k} * rings;
         const std::size_t before = std::size_t{k == 0 ? sectors - 1 : k - 1} * rings;
-        const detail::sector_sums<S> s = detail::sum_sector(weights, l + here, u + here, l + before, u + before);
+        const detail::sector_sums<S> s = detail::sum_sector(weights, grid, here, before);
         const auto& [centre, sideways] = weights.sectors()[k];
         sum.translation.x = sum.translation.x + (s.radial * centre.x + s.turning * sideways.x);
         sum.translation.y = sum.translation.y + (s.radial * centre.y + s.turning * sideways.y);
