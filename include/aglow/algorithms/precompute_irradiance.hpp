@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include <aglow/core/frame.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
+#include <aglow/estimators/kernel.hpp>
 
 namespace aglow {
 
@@ -64,19 +66,57 @@ template <Scene World, Illuminator Lights>
 
 namespace detail {
 
-/// Whether anything cuts through the disc of `radius` around a point on a surface: six spokes tell.
-template <Intersector World>
-[[nodiscard]] bool is_cut(const World& scene, const vec3<scalar_of<World>>& from, const frame<scalar_of<World>>& axes,
-                          scalar_of<World> radius) {
-    using T = scalar_of<World>;
-    for (int i = 0; i < 6; ++i) {
-        const T angle = pi<T> / 3 * static_cast<T>(i);
-        if (scene.occluded(from, from + (axes.x * std::cos(angle) + axes.y * std::sin(angle)) * radius)) {
-            return true;
+/// What cuts through discs around a point on a surface: how far twelve spokes in its plane are free.
+template <std::floating_point T>
+class disc_cut {
+public:
+    static constexpr int spokes = 12;
+
+    /// Looks as far as `radius`. What is met with a normal within `alike` (a cosine) is the surface itself, hollow.
+    template <Intersector World>
+    disc_cut(const World& scene, const vec3<T>& from, const vec3<T>& normal, T radius, T alike = 1) {
+        free_.fill(radius);
+        const frame<T> axes{normal};
+        // Every other one at first: most discs are whole.
+        for (int i = 0; i < spokes; i += 2) { cut_ = cut_ || scene.occluded(from, from + spoke(axes, i) * radius); }
+        for (int i = 0; cut_ && i < spokes; ++i) {
+            const vec3<T> towards = spoke(axes, i);
+            const auto hit = scene.intersect(ray<T>{from, towards, radius});
+            if (!hit || std::abs(glm::dot(vec3<T>(hit->normal), normal)) > alike) { continue; }
+            const T distance = glm::dot(vec3<T>(hit->position) - from, towards);
+            if (distance < radius) { free_[static_cast<std::size_t>(i)] = std::max(T(0), distance); }
         }
     }
-    return false;
-}
+
+    /// Whether anything does.
+    explicit operator bool() const { return cut_; }
+
+    /// The share of a kernel of `radius` that lies where its middle can see; never below a tenth, so that the noise
+    /// of few photons in a crevice is not blown up.
+    template <typename Kernel>
+    [[nodiscard]] T share(T radius, const Kernel& kernel) const {
+        if (!cut_ || !(radius > 0)) { return 1; }
+        T sum{};
+        for (const T f : free_) { sum += f < radius ? mass(kernel, square(f / radius)) : T(1); }
+        return std::max(T(0.1), sum / spokes);
+    }
+
+private:
+    /// Of the kernel within `rho2`, by Simpson's rule, which is exact for the polynomials among them.
+    template <typename Kernel>
+    static T mass(const Kernel& kernel, T rho2) {
+        return std::min(T(1), pi<T> * rho2 / 6 * (kernel(T(0)) + 4 * kernel(rho2 / 2) + kernel(rho2)));
+    }
+
+    /// Off the axes, along which walls are built.
+    static vec3<T> spoke(const frame<T>& axes, int i) {
+        const T angle = 2 * pi<T> / spokes * (static_cast<T>(i) + T(0.5));
+        return axes.x * std::cos(angle) + axes.y * std::sin(angle);
+    }
+
+    std::array<T, spokes> free_{};
+    bool cut_{false};
+};
 
 /// Whether photon `i` gives its place to a point: by chance, since photons of near indices lie near each other.
 [[nodiscard]] inline bool is_place(std::size_t i, const irradiance_options& options) {
@@ -84,27 +124,42 @@ template <Intersector World>
 }
 
 /// Whether photons that give their places are left out of the irradiance there. They would make it too bright, or,
-/// each left out at its own place alone, too dark: a point stands for more of the surface where photons happen to lie
-/// farther apart. Places that the photons counted know nothing of make neither.
+/// each left out at its own place alone, too dark: a point stands for more of the surface where photons happen to
+/// lie farther apart. Places that the photons counted know nothing of make neither.
 [[nodiscard]] inline bool places_apart(const irradiance_options& options) { return options.every >= 3; }
 
-/// Irradiance from photons that can be seen from the point: behind a thin wall in the middle of their disc lie photons
-/// of the same plane, side and normal, which no test of these can tell apart.
+/// Irradiance from photons that can be seen from the point, over the part of their disc that can: behind a thin
+/// wall in the middle of it lie photons of the same plane, side and normal, which no test of these can tell apart,
+/// and in the corner of a room half of it lies beyond the wall, where no photon can be.
 template <Intersector World, Spectrum S>
 [[nodiscard]] density_estimate<S, scalar_of<World>> seen_irradiance(
     const World& scene, const photon_map<S, scalar_of<World>>& map, const vec3<scalar_of<World>>& point,
     const vec3<scalar_of<World>>& normal, scalar_of<World> error, const irradiance_options& options) {
     using T = scalar_of<World>;
     const auto counts = [&](std::size_t i) { return !places_apart(options) || !is_place(i, options); };
+    const band_of<S> apart =
+        places_apart(options) ? static_cast<band_of<S>>(options.every) / static_cast<band_of<S>>(options.every - 1) : 1;
     auto seen = map.irradiance(point, normal, options.density, counts);
     const vec3<T> from = point + normal * error;
-    if (seen.count > 0 && is_cut(scene, from, frame<T>{normal}, seen.radius)) {
-        seen = map.irradiance(point, normal, options.density, [&](std::size_t i) {
-            return counts(i) && !scene.occluded(from, map.position(i) + normal * error);
-        });
-    }
-    if (!places_apart(options)) { return seen; }
-    return seen.times(static_cast<band_of<S>>(options.every) / static_cast<band_of<S>>(options.every - 1));
+    if (seen.count == 0) { return seen.times(apart); }
+    const T alike = static_cast<T>(options.density.normal_cosine);
+    disc_cut<T> cut{scene, from, normal, seen.radius, alike};
+    if (!cut) { return seen.times(apart); }
+    const T before = seen.radius;
+    seen = map.irradiance(point, normal, options.density, [&](std::size_t i) {
+        return counts(i) && !scene.occluded(from, map.position(i) + normal * error);
+    });
+    if (seen.radius > before) { cut = disc_cut<T>{scene, from, normal, seen.radius, alike}; }
+    const auto share = [&](T radius) {
+        return with_kernel(options.density.kernel, [&](const auto& k) { return band_of<S>(cut.share(radius, k)); });
+    };
+    const band_of<S> wide = 1 / share(seen.radius);
+    const band_of<S> level = max_component(seen.value);
+    // The bias is told by what half the radius gives, of which less is cut off.
+    const band_of<S> half = (level - seen.bias / 2) / share(seen.radius / 2);
+    auto made = seen.times(apart * wide);
+    made.bias = 2 * (level * wide - half) * apart;
+    return made;
 }
 
 /// What one point adds to what all points are off by together. Photons lie densely where it is bright, so a point
@@ -168,8 +223,8 @@ void keep_filled(std::vector<Point>& points, const callback<double>& progress, c
 }  // namespace detail
 
 /// Irradiance from all light at one in `options.every` photons of each map, on the photons' side. Points keep the
-/// radius of their indirect estimate. The same for any executor. Stopped early, there are fewer points, spread over all
-/// places, and gather rays that find none near go on instead. O(points (k + shadow rays)).
+/// radius of their indirect estimate. The same for any executor. Stopped early, there are fewer points, spread over
+/// all places, and gather rays that find none near go on instead. O(points (k + shadow rays)).
 template <Scene World, Illuminator Lights, Executor Run = in_sequence>
 [[nodiscard]] auto precompute_irradiance(const World& scene, const Lights& lights,
                                          const photon_maps<spectrum_of<World>, scalar_of<World>>& maps,
@@ -210,8 +265,8 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
         p.error = caustic.error + indirect.error;
         p.radius = indirect.count > 0 ? indirect.radius : T(0);
         parts[i] = detail::shared_part_of<S, T>(direct, indirect, caustic);
-        p.cut = detail::is_cut(scene, p.position + p.normal * error, frame<T>{p.normal},
-                               std::max(p.radius, caustic.radius));
+        p.cut = static_cast<bool>(
+            detail::disc_cut<T>{scene, p.position + p.normal * error, p.normal, std::max(p.radius, caustic.radius)});
     };
     detail::keep_filled(points, options.progress, fill, run);
     shared_error shared = detail::shared_by(parts, maps.indirect.common, maps.caustic.common);
