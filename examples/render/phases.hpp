@@ -94,9 +94,9 @@ private:
     }
     void note(const aglow::preparation& now) {
         cut_ = now.phase;
-        char share[16];
-        std::snprintf(share, sizeof share, "%.0f %%", 100 * now.share);
-        notes_.push_back(name_of(now.phase) + ": cut short after " + share + ", to leave time for the picture");
+        char cut[64];
+        std::snprintf(cut, sizeof cut, ": cut short after %.0f %%, to leave time for the picture", 100 * now.share);
+        notes_.push_back(name_of(now.phase) + cut);
     }
 
     const time_budget& budget_;
