@@ -1,5 +1,7 @@
 #include "common/model.hpp"
 
+#include <stdlib.h>  // mkdtemp
+
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -16,9 +18,8 @@ using aglow::lobe_set;
 
 /// Files of this test's own, gone afterwards.
 struct files {
-    fs::path folder{fs::temp_directory_path() /
-                    ("aglow_model_" + std::to_string(std::hash<std::string>{}(fs::current_path().string())))};
-    files() { fs::create_directories(folder); }
+    std::string name = (fs::temp_directory_path() / "aglow_model_XXXXXX").string();
+    fs::path folder{::mkdtemp(name.data())};
     ~files() { fs::remove_all(folder); }
 
     fs::path write(const std::string& name, const std::string& text) const {

@@ -34,7 +34,7 @@ public:
             }
             return lobes & ~lobe_set::diffuse;
         };
-        detail::path_walk<World, Lights, N> walk{scene_, lights_, numbers, emission_rule::all, options_, eye};
+        detail::path_walk<World, Lights, N, true> walk{scene_, lights_, numbers, emission_rule::all, options_, eye};
         const auto light = walk.run(shade, options_.split);
         return {light.radiance, light.error, light.common, light.bias};
     }

@@ -20,7 +20,7 @@ public:
     /// Radiance that comes back along `eye`, W/(m² sr); unbiased, so its own error guess is 0.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
-        return {walk_path(scene_, lights_, eye, numbers, emission_rule::all, options_).radiance, 0};
+        return {walk_path<true>(scene_, lights_, eye, numbers, emission_rule::all, options_).radiance, 0};
     }
 
     /// Light that comes along a gather ray; emission that the asker finds by himself is left to him.
@@ -42,7 +42,7 @@ template <Scene World, Illuminator Lights, Numbers N>
                                                                        const ray<scalar_of<World>>& eye,
                                                                        const N& numbers,
                                                                        const path_options& options = {}) {
-    return walk_path(scene, lights, eye, numbers, emission_rule::all, options).radiance;
+    return walk_path<true>(scene, lights, eye, numbers, emission_rule::all, options).radiance;
 }
 
 }  // namespace aglow

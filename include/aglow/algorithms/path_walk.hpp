@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/incoming_light.hpp>
@@ -147,13 +148,24 @@ struct walk_stop {
     std::uint32_t bounce;
 };
 
+/// What a walk from the eye brings: `incoming_light`, but of no use for gradients.
+template <Spectrum S, std::floating_point T>
+struct eye_light {
+    S radiance{};
+    T distance{std::numeric_limits<T>::infinity()};
+    band_of<S> error{};
+    band_of<S> common{};
+    band_of<S> bias{};
+};
+
 /// A walk from the eye or from a gather point. It takes for itself what surfaces emit and what comes from beyond the
 /// scene; the rest of a surface's light is for `shade` to add.
-template <Scene World, Illuminator Lights, Numbers N>
+template <Scene World, Illuminator Lights, Numbers N, bool Eye = false>
 class path_walk {
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
     using B = band_of<S>;
+    using found = std::conditional_t<Eye, eye_light<S, T>, incoming_light<S, T>>;
 
 public:
     path_walk(const World& scene, const Lights& lights, const N& numbers, emission_rule rule,
@@ -164,8 +176,8 @@ public:
     /// returns the lobes to go on by. At the first `splits` surfaces, mirrors all, the walk goes both ways where they
     /// are two.
     template <typename Shade>
-    [[nodiscard, gnu::always_inline]] inline incoming_light<S, T> run(const Shade& shade, std::uint32_t splits = 0,
-                                                                      std::uint32_t bounce = 1) {
+    [[nodiscard, gnu::always_inline]] inline found run(const Shade& shade, std::uint32_t splits = 0,
+                                                       std::uint32_t bounce = 1) {
         for (;; ++bounce) {
             const auto hit = scene_.intersect(at_.path);
             if (!hit) { return leave(bounce); }
@@ -215,8 +227,7 @@ private:
     static constexpr bool can_fork = (static_lobes<World> & lobe_set::specular) == lobe_set::specular;
 
     template <typename Shade>
-    incoming_light<S, T> split(const hit_of<World>& hit, const walk_stop<World>& stop, const Shade& shade,
-                               std::uint32_t splits) {
+    found split(const hit_of<World>& hit, const walk_stop<World>& stop, const Shade& shade, std::uint32_t splits) {
         for (const lobe_set way : {lobe_set::specular_reflection, lobe_set::specular_transmission}) {
             const auto name = static_cast<std::uint64_t>(way);
             path_walk branch{scene_, lights_, N{numbers_.fork(mix(stop.bounce, name))}, rule_, options_, at_.path};
@@ -242,14 +253,14 @@ private:
     void take_in(const walk_stop<World>& stop) {
         if (stop.bounce == 1) {
             result_.distance = stop.travelled;
-            result_.normal = vec3<T>(stop.hit.normal);
+            if constexpr (!Eye) { result_.normal = vec3<T>(stop.hit.normal); }
         }
         const S glow = emitted(stop.hit, stop.wo);
         if (is_radiance(glow) && is_black(glow)) { return; }
         add(glow * B(emission_share(at_, lights_, stop.hit, rule_, stop.bounce)));
     }
 
-    incoming_light<S, T> leave(std::uint32_t bounce) {
+    found leave(std::uint32_t bounce) {
         if constexpr (ShinesFromBeyond<Lights, T>) {
             const T share = escape_share(at_, lights_, rule_, bounce);
             if (share > 0) { add(escaped_radiance<S>(lights_, at_.path.direction) * B(share)); }
@@ -263,7 +274,7 @@ private:
     emission_rule rule_;
     const path_options options_;
     walk_state<World> at_;
-    incoming_light<S, T> result_{};
+    found result_{};
 };
 
 }  // namespace detail
@@ -273,11 +284,13 @@ private:
 /// `terminal(hit, wo, travelled, error, mirrored)` may end the walk with an optional `estimate` of the radiance that
 /// the diffuse lobes of `hit` send towards `wo`, direct light included; `travelled` is the way from the last
 /// diffuse or glossy surface, `mirrored` tells that there were only mirrors before. Samples with broken hits or numbers
-/// end where they are, never summed.
-template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
-[[nodiscard, gnu::always_inline]] inline incoming_light<spectrum_of<World>, scalar_of<World>> walk_path(
-    const World& scene, const Lights& lights, const ray<scalar_of<World>>& start, const N& numbers,
-    emission_rule rule = emission_rule::all, const path_options& options = {}, const Terminal& terminal = {}) {
+/// end where they are, never summed. A walk from the `Eye` tells no normal.
+template <bool Eye = false, Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
+[[nodiscard, gnu::always_inline]] inline auto walk_path(const World& scene, const Lights& lights,
+                                                        const ray<scalar_of<World>>& start, const N& numbers,
+                                                        emission_rule rule = emission_rule::all,
+                                                        const path_options& options = {},
+                                                        const Terminal& terminal = {}) {
     const auto shade = [&](auto& walk, const detail::walk_stop<World>& stop) {
         lobe_set lobes = stop.hit.lobes();
         if constexpr (!std::same_as<Terminal, no_terminal>) {
@@ -295,7 +308,7 @@ template <Scene World, Illuminator Lights, Numbers N, typename Terminal = no_ter
         }
         return lobes;
     };
-    return detail::path_walk<World, Lights, N>{scene, lights, numbers, rule, options, start}.run(shade);
+    return detail::path_walk<World, Lights, N, Eye>{scene, lights, numbers, rule, options, start}.run(shade);
 }
 
 }  // namespace aglow
