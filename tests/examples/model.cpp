@@ -18,8 +18,8 @@ using aglow::lobe_set;
 
 /// Files of this test's own, gone afterwards.
 struct files {
-    std::string name = (fs::temp_directory_path() / "aglow_model_XXXXXX").string();
-    fs::path folder{::mkdtemp(name.data())};
+    std::string pattern = (fs::temp_directory_path() / "aglow_model_XXXXXX").string();
+    fs::path folder{::mkdtemp(pattern.data())};
     ~files() { fs::remove_all(folder); }
 
     fs::path write(const std::string& name, const std::string& text) const {
