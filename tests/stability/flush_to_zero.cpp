@@ -17,10 +17,16 @@ namespace {
     return true;
 }();
 
+#ifdef __FAST_MATH__
+constexpr bool always = true;  // programs linked with -ffast-math begin so
+#else
+constexpr bool always = false;
+#endif
+
 }  // namespace
 
 TEST_CASE("stability 71: a run that was asked to flush subnormal numbers to zero does") {
     volatile float small = 0x1p-126f;
-    CHECK((small * 0.5f == 0) == flushed);
+    CHECK((small * 0.5f == 0) == (flushed || always));
 }
 #endif
