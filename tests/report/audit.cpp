@@ -313,6 +313,12 @@ TEST_CASE("audit: colours count channel by channel, from any type with an index"
     CHECK(a.mean_error > 0.06);
     CHECK(a.energy_bias.contains(0.03 / 1.6));
     CHECK(a.energy_bias.high - a.energy_bias.low < 0.3 * 0.03 / 1.6);
+    // One audit looks at few pixels; what many of them say in the mean is the bias itself.
+    running_mean bias;
+    for (std::uint64_t seed = 0; seed < 25; ++seed) {
+        bias.add(audit(image, colour, {.seed = seed}).energy_bias.estimate);
+    }
+    CHECK(bias.mean() == Approx(0.03 / 1.6).epsilon(0.05));
 }
 
 TEST_CASE("audit: a budget is kept, and costs sharpness only") {
