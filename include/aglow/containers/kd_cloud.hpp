@@ -5,12 +5,14 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
-#include <ranges>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <aglow/core/parallel.hpp>
@@ -52,6 +54,17 @@ template <typename T>
     return std::max({magnitude(p.x), magnitude(p.y), magnitude(p.z)}) <= farthest;
 }
 
+/// So many items, each at its number: what a random-access range needs here of <ranges>, which is slow to read.
+template <typename Items>
+concept NumberedItems = requires(const Items& items, std::ptrdiff_t i) {
+    std::begin(items)[i];
+    { std::size(items) } -> std::convertible_to<std::size_t>;
+};
+
+/// What item number i of `Items` is.
+template <typename Items>
+using item_of = decltype(std::begin(std::declval<const Items&>())[0]);
+
 /// `std::invoke(position, item)`.
 template <typename T, typename Position, typename Item>
 [[nodiscard]] vec3<T> place_of(const Position& position, Item&& item) {
@@ -74,10 +87,10 @@ std::size_t take_block(kd_cloud<T>& cloud, const Items& items, const Position& p
     T* const y = cloud.at[1].get();
     T* const z = cloud.at[2].get();
     std::uint32_t* const index = cloud.index.get();
-    const auto item = std::ranges::begin(items);
+    const auto item = std::begin(items);
     std::size_t to = first;
     for (std::size_t i = first; i < last; ++i) {
-        const vec3<T> p = place_of<T>(position, item[static_cast<std::ranges::range_difference_t<const Items>>(i)]);
+        const vec3<T> p = place_of<T>(position, item[static_cast<std::ptrdiff_t>(i)]);
         x[to] = p.x;
         y[to] = p.y;
         z[to] = p.z;
@@ -91,7 +104,7 @@ std::size_t take_block(kd_cloud<T>& cloud, const Items& items, const Position& p
 template <typename T, typename Items, typename Position, Executor E>
 std::size_t take(kd_cloud<T>& cloud, const Items& items, const Position& position, const E& run) {
     constexpr std::size_t block = 1 << 14;
-    const auto count = static_cast<std::size_t>(std::ranges::size(items));
+    const auto count = static_cast<std::size_t>(std::size(items));
     std::vector<std::size_t> taken((count + block - 1) / block);
     for_each_block(run, count, block, [&](std::size_t b, std::size_t first, std::size_t last) {
         taken[b] = take_block(cloud, items, position, first, last);

@@ -12,10 +12,10 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <type_traits>
@@ -109,10 +109,9 @@ public:
     /// would not be (beyond 4e18 for float), are left out and counted in `dropped()`. The same tree for any executor.
     /// O(n log n), with 40 bytes more per point while it runs (float). Throws std::length_error for 2^32 - 64
     /// items or more.
-    template <std::ranges::random_access_range Items, typename Position, Executor E = in_sequence>
-        requires std::convertible_to<std::invoke_result_t<const Position&, std::ranges::range_reference_t<const Items>>,
-                                     vec3<T>>
-        kd_tree(const Items& items, const Position& position, const E& run = {});
+    template <detail::NumberedItems Items, typename Position, Executor E = in_sequence>
+        requires std::convertible_to<std::invoke_result_t<const Position&, detail::item_of<Items>>, vec3<T>> kd_tree(
+            const Items& items, const Position& position, const E& run = {});
 
     /// Items in the tree.
     [[nodiscard]] std::size_t size() const { return tree_.size; }
@@ -212,11 +211,10 @@ private:
 };
 
 template <typename T>
-template <std::ranges::random_access_range Items, typename Position, Executor E>
-    requires std::convertible_to<std::invoke_result_t<const Position&, std::ranges::range_reference_t<const Items>>,
-                                 vec3<T>>
+template <detail::NumberedItems Items, typename Position, Executor E>
+    requires std::convertible_to<std::invoke_result_t<const Position&, detail::item_of<Items>>, vec3<T>>
     kd_tree<T>::kd_tree(const Items& items, const Position& position, const E& run) {
-        const auto count = static_cast<std::size_t>(std::ranges::size(items));
+        const auto count = static_cast<std::size_t>(std::size(items));
         if (count >= std::numeric_limits<std::uint32_t>::max() - 64) {
             throw std::length_error("aglow::kd_tree: more items than a 32-bit slot can number");
         }

@@ -20,9 +20,7 @@ namespace aglow {
 [[nodiscard]] inline std::optional<double> conformal_quantile(std::span<const double> scores, double confidence) {
     const auto rank = static_cast<std::size_t>(std::ceil(static_cast<double>(scores.size() + 1) * confidence));
     if (rank == 0 || rank > scores.size()) { return std::nullopt; }
-    std::vector<double> order(scores.begin(), scores.end());
-    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rank - 1), order.end());
-    return order[rank - 1];
+    return sorted(scores)[rank - 1];
 }
 
 /// What turns guesses of one class of pixels into error bars: bar = `scale` · guess.

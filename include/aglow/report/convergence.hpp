@@ -1,7 +1,6 @@
 // Error against time: slopes, the time to reach an error, and the table of a series of runs.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -103,26 +102,24 @@ struct convergence_row {
 
 /// One row a budget, in rising order of budget. Give squared errors (relMSE) for an efficiency that means something.
 [[nodiscard]] inline std::vector<convergence_row> convergence_table(std::span<const timed_error> runs) {
-    std::vector<timed_error> rising(runs.begin(), runs.end());
-    std::stable_sort(rising.begin(), rising.end(),
-                     [](const timed_error& a, const timed_error& b) { return a.budget < b.budget; });
+    std::vector<double> budgets;
+    for (const timed_error& run : runs) { budgets.push_back(static_cast<double>(run.budget)); }
+    const std::vector<std::size_t> rising = rising_order(budgets);
     std::vector<convergence_row> rows;
-    for (auto first = rising.begin(); first != rising.end();) {
-        const auto last =
-            std::find_if(first, rising.end(), [&](const timed_error& r) { return r.budget != first->budget; });
+    for (std::size_t i = 0; i < rising.size();) {
+        const std::size_t budget = runs[rising[i]].budget;
         std::vector<double> seconds;
         std::vector<double> errors;
-        for (auto r = first; r != last; ++r) {
-            seconds.push_back(r->seconds);
-            errors.push_back(r->error);
+        for (; i < rising.size() && runs[rising[i]].budget == budget; ++i) {
+            seconds.push_back(runs[rising[i]].seconds);
+            errors.push_back(runs[rising[i]].error);
         }
-        convergence_row row{.budget = first->budget, .runs = errors.size(), .seconds = median(seconds)};
+        convergence_row row{.budget = budget, .runs = errors.size(), .seconds = median(seconds)};
         row.error = median(errors);
         row.error_low = quantile(errors, 0.05);
         row.error_high = quantile(errors, 0.95);
         row.efficiency = 1 / (row.error * row.seconds);
         rows.push_back(row);
-        first = last;
     }
     return rows;
 }

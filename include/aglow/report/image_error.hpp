@@ -61,8 +61,8 @@ public:
         const double product = (value - first) * (value - second);  // mean is the squared error, without their noise
         const double half = 0.5 * std::abs(first - second);
         relative_.push_back(gap == 0 ? 0 : gap / (std::abs(truth) + floor_));
-        terms_.push_back(
-            {gap * gap / (truth * truth + options_.epsilon), product / (truth * truth + options_.epsilon)});
+        squares_.push_back(gap * gap / (truth * truth + options_.epsilon));
+        terms_.push_back(product / (truth * truth + options_.epsilon));
         smape_.add(gap == 0 ? 0 : gap / (0.5 * (std::abs(value) + std::abs(truth)) + floor_));
         mse_.add(product);
         value_.add(value);
@@ -88,11 +88,6 @@ public:
     }
 
 private:
-    struct squared {
-        double size;
-        double term;
-    };
-
     static running_mean mean_of(const std::vector<double>& values) {
         running_mean all;
         for (const double x : values) { all.add(x); }
@@ -108,13 +103,12 @@ private:
     }
 
     void add_squares(image_error& e) {
-        std::stable_sort(terms_.begin(), terms_.end(),
-                         [](const squared& a, const squared& b) { return a.size < b.size; });
         const auto left_out = static_cast<std::size_t>(options_.trimmed * static_cast<double>(terms_.size()));
         running_mean all;
-        for (std::size_t i = 0; i < terms_.size(); ++i) {
-            all.add(terms_[i].term);
-            if (i + 1 + left_out == terms_.size()) { e.relmse_trimmed = all.mean(); }
+        std::size_t larger = terms_.size();
+        for (const std::size_t i : rising_order(squares_)) {
+            all.add(terms_[i]);
+            if (--larger == left_out) { e.relmse_trimmed = all.mean(); }
         }
         e.relmse = all.mean();
     }
@@ -122,7 +116,8 @@ private:
     image_error_options options_;
     double floor_;
     std::vector<double> relative_{};
-    std::vector<squared> terms_{};
+    std::vector<double> squares_{};
+    std::vector<double> terms_{};  ///< the squares without the noise of the halves
     running_mean smape_{}, mse_{}, value_{}, truth_{}, noise_{}, noise2_{};
     double largest_{0};
 };

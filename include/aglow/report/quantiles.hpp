@@ -19,6 +19,14 @@ namespace aglow {
     return rising;
 }
 
+/// The places of `values` by rising value, equal ones by their place. Expects no NaN.
+[[nodiscard]] inline std::vector<std::size_t> rising_order(std::span<const double> values) {
+    std::vector<std::size_t> order(values.size());
+    for (std::size_t i = 0; i < order.size(); ++i) { order[i] = i; }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+    return order;
+}
+
 /// The p-quantile of numbers in rising order, linear between neighbours (Hyndman & Fan 1996, type 7); 0 of nothing.
 [[nodiscard]] inline double sorted_quantile(std::span<const double> rising, double p) {
     if (rising.empty()) { return 0; }

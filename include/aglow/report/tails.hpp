@@ -19,9 +19,10 @@ namespace aglow {
         if (x != 0) { sizes.push_back(std::abs(x)); }
     }
     if (top == 0 || sizes.size() <= top) { return 0; }
-    std::sort(sizes.begin(), sizes.end(), [](double a, double b) { return a > b; });
+    const std::vector<double> rising = sorted(sizes);
+    const std::size_t last = rising.size() - 1;
     double logs = 0;
-    for (std::size_t i = 0; i < top; ++i) { logs += std::log(sizes[i] / sizes[top]); }
+    for (std::size_t i = 0; i < top; ++i) { logs += std::log(rising[last - i] / rising[last - top]); }
     return logs / static_cast<double>(top);
 }
 
