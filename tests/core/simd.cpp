@@ -23,7 +23,7 @@ using numbers = std::array<T, simd::lanes>;
 /// All that a pack says of three arrays.
 template <typename T>
 struct facts {
-    numbers<T> sub, min, max, length2, all, without;
+    numbers<T> sub, min, max, length2, all, without, step;
     std::uint32_t less, equal;
     T smallest, largest;
     bool operator==(const facts&) const = default;
@@ -41,6 +41,7 @@ struct tell_facts {
         P::store(told.length2.data(), P::length2(a, b, P::load(z.data())));
         P::store(told.all.data(), P::all(x[3]));
         P::store(told.without.data(), P::without(a, 11));
+        P::store(told.step.data(), P::step(P::all(T(1.5)), a, b));
         told.less = P::less(a, b);
         told.equal = P::equal(a, b);
         told.smallest = P::smallest(a);
@@ -108,6 +109,7 @@ facts<T> truth(const numbers<T>& x, const numbers<T>& y, const numbers<T>& z) {
         t.max[i] = std::max(x[i], y[i]);
         t.length2[i] = simd::length2(x[i], y[i], z[i]);
         t.all[i] = x[3];
+        t.step[i] = x[i] < y[i] ? std::nextafter(T(1.5), T(2)) : T(1.5);
         t.less |= std::uint32_t{x[i] < y[i]} << i;
         t.equal |= std::uint32_t{x[i] == y[i]} << i;
     }

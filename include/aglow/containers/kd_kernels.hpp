@@ -32,14 +32,25 @@ template <typename T>
     return std::min(std::max(radius2, std::numeric_limits<T>::min()), task.limit);
 }
 
+/// Sends a probe home unless a hint spares it the way, and stands it at the start of its search; returns the squared
+/// radius to start with.
+struct set_off_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline T run(const kd_storage<T>& tree, kd_probe<T>& probe, kd_task<T> task) {
+        probe.at_home = false;
+        if (!(task.hint2 > 0)) { go_home_kernel::run<P>(tree, probe); }
+        const T radius2 = first_radius2(tree, probe, task);
+        start_around<P>(tree, probe, radius2);
+        return radius2;
+    }
+};
+
 /// One whole search; returns the distance2 of the last found, or the limit.
 template <typename Runner, typename T>
 T search(const kd_storage<T>& tree, kd_probe<T>& probe, kd_task<T> task, kd_candidates<T>& found,
          const kd_filter<T>& filter) {
-    probe.at_home = false;
-    if (!(task.hint2 > 0)) { Runner::template run<go_home_kernel>(tree, probe); }
-    start(probe, tree.height, 0);
-    return find_nearest<Runner>(tree, probe, task.count, first_radius2(tree, probe, task), task.limit, found, filter);
+    const T radius2 = Runner::template run<set_off_kernel>(tree, probe, task);
+    return find_nearest<Runner>(tree, probe, task.count, radius2, task.limit, found, filter);
 }
 
 /// Brings searches side by side to where their leaves are listed and asked for: while one waits for memory the others
@@ -52,7 +63,6 @@ struct approach_kernel {
         for (kd_probe<T>& probe : probes) {
             probe.at_home = !hinted;
             probe.home[static_cast<std::size_t>(tree.height)] = 0;
-            start(probe, tree.height, 0);
         }
         for (int level = hinted ? 0 : tree.height; level > 0; --level) {
             const auto l = static_cast<std::size_t>(level);
@@ -63,6 +73,7 @@ struct approach_kernel {
         }
         for (std::size_t i = 0; i < probes.size(); ++i) {
             radius2[i] = first_radius2(tree, probes[i], task);
+            start_around<P>(tree, probes[i], radius2[i]);
             advance<P>(tree, probes[i], radius2[i], 1);
             prefetch_listed(tree, probes[i], 1);
         }

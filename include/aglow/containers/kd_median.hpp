@@ -53,17 +53,6 @@ private:
     std::array<T, most_samples> sample_;
 };
 
-/// Two numbers between which the k-th is likely to lie if all are even in [low, high].
-template <typename T>
-[[nodiscard]] kd_interval<T> expected(std::uint32_t count, std::uint32_t k, kd_interval<T> range) {
-    const auto [low, high] = range;
-    const T n = static_cast<T>(count);
-    const T rank = static_cast<T>(k) - T(0.5);
-    const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 1;
-    const T step = (high - low) / n;
-    return {std::max(low, low + step * (rank - slack)), std::min(high, low + step * (rank + slack))};
-}
-
 /// `value` among many numbers, of which `less` more are less.
 struct rank_kernel {
     template <typename P, typename T>

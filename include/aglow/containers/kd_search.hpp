@@ -65,8 +65,10 @@ template <typename P, typename T>
     const std::uint32_t node = probe.home[level];
     const P d = box_distances2<P>(tree.node(static_cast<int>(level), node), probe.point);
     P::store(probe.path[level], d);
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(P::equal(d, P::all(P::smallest(d)))));
-    probe.home[level - 1] = node * kd_fan + lane;
+    // Most often the point is in a box, and the smallest need not be waited for.
+    std::uint32_t nearest = P::equal(d, P::all(T(0)));
+    if (nearest == 0) { nearest = P::equal(d, P::all(P::smallest(d))); }
+    probe.home[level - 1] = node * kd_fan + static_cast<std::uint32_t>(std::countr_zero(nearest));
 }
 
 /// Finds the leaf nearest to the point, greedily, and the distances on the way.
@@ -122,6 +124,18 @@ void start(kd_probe<T>& probe, int level, std::uint32_t node) {
     probe.open[top][0] = node;
     probe.count[top] = 1;
     probe.next[top] = 0;
+}
+
+/// Stands a search for what is closer than `bound` before the lowest node on the way home that nothing of it lies
+/// beside; a probe that is not at home, before the top.
+template <typename P, typename T>
+[[gnu::always_inline]] inline void start_around(const kd_storage<T>& tree, kd_probe<T>& probe, T bound) {
+    auto level = static_cast<std::size_t>(tree.height);
+    if (!probe.at_home) { return start(probe, tree.height, 0); }
+    while (level > 1 && P::less(P::load(probe.path[level]), P::all(bound)) == 1u << probe.home[level - 1] % kd_fan) {
+        --level;
+    }
+    start(probe, static_cast<int>(level), probe.home[level]);
 }
 
 /// Takes leaves of one place out of `mask` once enough of its points are listed: they come in the order of their rank,

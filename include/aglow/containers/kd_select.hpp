@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,24 +44,29 @@ void pad(T* numbers, std::uint32_t count) {
     std::fill_n(numbers + count, std::size_t{simd::lanes}, std::numeric_limits<T>::max());
 }
 
-/// The k-th smallest, k from 1, of padded numbers.
+/// The k-th smallest, k from 1, of few padded numbers: that which k - 1 are less than. Ranks are counted in steps up
+/// from one.
 struct kth_by_pairs_kernel {
     template <typename P, typename T>
     [[gnu::always_inline]] static inline T run(const T* numbers, std::uint32_t count, std::uint32_t k) {
-        T kth = numbers[0];
-        bool first = true;
-        for (std::uint32_t i = 0; i < count; ++i) {
+        using bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+        static_assert(kd_few == 2 * simd::lanes);
+        const P some = P::load(numbers);
+        const P others = P::load(numbers + (count > simd::lanes ? simd::lanes : 0));
+        P some_ranks = P::all(T(1));
+        P others_ranks = some_ranks;
+        for (std::uint32_t i = 0; i < (count + 7) / 8 * 8; ++i) {
             const P pivot = P::all(numbers[i]);
-            std::uint32_t below = 0;
-            for (std::uint32_t j = 0; j < count; j += simd::lanes) {
-                below += P::count(P::less(P::load(numbers + j), pivot));
-            }
-            if (below < k && (first || kth < numbers[i])) {
-                kth = numbers[i];
-                first = false;
-            }
+            some_ranks = P::step(some_ranks, pivot, some);
+            others_ranks = P::step(others_ranks, pivot, others);
         }
-        return kth;
+        const auto there = static_cast<std::uint32_t>((std::uint64_t{1} << count) - 1);
+        for (;; --k) {
+            const P rank = P::all(std::bit_cast<T>(std::bit_cast<bits>(T(1)) + (k - 1)));
+            const std::uint32_t has = P::equal(some_ranks, rank) | P::equal(others_ranks, rank) << simd::lanes;
+            // Those just as far have the rank of the first of them.
+            if ((has & there) != 0) { return numbers[std::countr_zero(has & there)]; }
+        }
     }
 };
 
@@ -127,27 +134,45 @@ kd_bracket cut_to_rank(const T* numbers, std::uint32_t count, std::uint32_t k, k
     return Runner::template run<cut_bracket_kernel>(numbers, count, side.low, side.high, to);
 }
 
-/// The k-th smallest, k from 1, of numbers in [0, bound), which must be roughly even to be fast.
+/// Two numbers between which the k-th is likely to lie if all are even in [low, high].
+template <typename T>
+[[nodiscard]] kd_interval<T> expected(std::uint32_t count, std::uint32_t k, kd_interval<T> range) {
+    const auto [low, high] = range;
+    const T n = static_cast<T>(count);
+    const T rank = static_cast<T>(k) - T(0.5);
+    const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 2;
+    const T step = (high - low) / n;
+    return {std::max(low, low + step * (rank - slack)), std::min(high, low + step * (rank + slack))};
+}
+
+/// The same where they are not even, judged by a few of them.
+template <typename Runner, typename T>
+[[nodiscard, gnu::noinline]] kd_interval<T> expected_by_sample(const T* numbers, std::uint32_t count, std::uint32_t k) {
+    T sample[kd_few + simd::lanes];
+    for (std::uint32_t i = 0; i < kd_few; ++i) {
+        sample[i] = numbers[static_cast<std::size_t>(std::uint64_t{i} * count / kd_few)];
+    }
+    pad(sample, kd_few);
+    const auto rank = static_cast<std::uint32_t>(std::uint64_t{k} * kd_few / count);
+    const auto at = [&](std::uint32_t r) { return Runner::template run<kth_by_pairs_kernel>(sample, kd_few, r); };
+    return {at(rank > 4 ? rank - 3 : 1), simd::next_above(at(std::min(rank + 4, kd_few)))};
+}
+
+/// The k-th smallest, k from 1, of numbers in [0, bound), faster where they are roughly even.
 /// `numbers` and the two spares have room for sixteen more.
 template <typename Runner, typename T>
 [[nodiscard]] T kth_smallest(T* numbers, std::uint32_t count, std::uint32_t k, T bound, T* spare, T* other) {
-    T low = 0;
-    T high = bound;
+    kd_interval<T> all{0, bound};
     pad(numbers, count);
-    for (int round = 0; count > kd_few && round < 5; ++round) {
+    for (int round = 0; count > kd_few && round < 8; ++round) {
         if (round > 0) {
             const auto [least, most] = Runner::template run<range_kernel>(numbers, count);
             if (least == most) { return least; }
-            low = least;
-            high = simd::next_above(most);
+            all = {least, simd::next_above(most)};
         }
-        const T n = static_cast<T>(count);
-        const T rank = static_cast<T>(k) - T(0.5);
-        const T slack = T(1.6) * std::sqrt(rank * (n - rank) / n) + 2;
-        const T step = (high - low) / n;
-        const T from = std::max(low, low + step * (rank - slack));
-        const T to = std::min(high, low + step * (rank + slack));
-        const kd_bracket cut = cut_to_rank<Runner>(numbers, count, k, {low, high}, {from, to}, spare);
+        const kd_interval<T> guess =
+            round < 2 ? expected(count, k, all) : expected_by_sample<Runner>(numbers, count, k);
+        const kd_bracket cut = cut_to_rank<Runner>(numbers, count, k, all, guess, spare);
         k -= cut.below;
         count = cut.inside;
         numbers = spare;

@@ -102,6 +102,11 @@ struct plain {
         for (unsigned i = 0; i < lanes; ++i) { mask |= std::uint32_t{a.v[i] == b.v[i]} << i; }
         return mask;
     }
+    /// `a`, in the lanes where x is less than y moved to the next number above. Expects normal numbers.
+    static plain step(plain a, const plain& x, const plain& y) {
+        for (unsigned i = 0; i < lanes; ++i) { a.v[i] = x.v[i] < y.v[i] ? next_above(a.v[i]) : a.v[i]; }
+        return a;
+    }
     static T smallest(const plain& a) {
         T least = a.v[0];
         for (unsigned i = 1; i < lanes; ++i) { least = a.v[i] < least ? a.v[i] : least; }

@@ -88,6 +88,11 @@ struct avx2_floats {
         asm("vcmpeqps %2, %1, %0" : "=x"(is) : "x"(a.v), "xm"(b.v));
         return bits(is);
     }
+    static avx2_floats step(avx2_floats a, avx2_floats x, avx2_floats y) {
+        vector is;
+        asm("vcmpltps %2, %1, %0" : "=x"(is) : "x"(x.v), "xm"(y.v));
+        return {(vector)((integers)a.v - (integers)is)};
+    }
     static float smallest(avx2_floats a) {
         a = min(a, {__builtin_shufflevector(a.v, a.v, 4, 5, 6, 7, 0, 1, 2, 3)});
         a = min(a, {__builtin_shufflevector(a.v, a.v, 2, 3, 0, 1, 6, 7, 4, 5)});
@@ -156,6 +161,11 @@ struct avx2_doubles {
         vector is;
         asm("vcmpeqpd %2, %1, %0" : "=x"(is) : "x"(a.v), "xm"(b.v));
         return bits(is);
+    }
+    static avx2_doubles step(avx2_doubles a, avx2_doubles x, avx2_doubles y) {
+        vector is;
+        asm("vcmpltpd %2, %1, %0" : "=x"(is) : "x"(x.v), "xm"(y.v));
+        return {(vector)((integers)a.v - (integers)is)};
     }
     static double smallest(avx2_doubles a) {
         a = min(a, {__builtin_shufflevector(a.v, a.v, 2, 3, 0, 1)});

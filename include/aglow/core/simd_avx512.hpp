@@ -78,6 +78,12 @@ struct avx512_floats {
         asm("vcmpps $0, %2, %1, %0" : "=Yk"(mask) : "v"(a.v), "vm"(b.v));
         return mask;
     }
+    static avx512_floats step(avx512_floats a, avx512_floats x, avx512_floats y) {
+        const auto mask = static_cast<std::uint16_t>(less(x, y));
+        const integers one = 1 - integers{};
+        asm("vpaddd %2, %0, %0%{%1%}" : "+v"(a.v) : "Yk"(mask), "v"(one));
+        return a;
+    }
     static float smallest(avx512_floats a) { return avx2_floats::smallest(avx2_floats::min(low(a), high(a))); }
     static float largest(avx512_floats a) { return avx2_floats::largest(avx2_floats::max(low(a), high(a))); }
     static avx512_floats without(avx512_floats a, std::uint32_t lane) {
@@ -144,6 +150,12 @@ struct avx512_doubles {
         std::uint16_t mask;
         asm("vcmppd $0, %2, %1, %0" : "=Yk"(mask) : "v"(a.v), "vm"(b.v));
         return mask;
+    }
+    static avx512_doubles step(avx512_doubles a, avx512_doubles x, avx512_doubles y) {
+        const auto mask = static_cast<std::uint16_t>(less(x, y));
+        const integers one = 1 - integers{};
+        asm("vpaddq %2, %0, %0%{%1%}" : "+v"(a.v) : "Yk"(mask), "v"(one));
+        return a;
     }
     static double smallest(avx512_doubles a) { return avx2_doubles::smallest(avx2_doubles::min(low(a), high(a))); }
     static double largest(avx512_doubles a) { return avx2_doubles::largest(avx2_doubles::max(low(a), high(a))); }

@@ -45,6 +45,9 @@ struct pair {
     [[gnu::always_inline]] static inline std::uint32_t equal(const pair& p, const pair& q) {
         return Half::equal(p.a, q.a) | Half::equal(p.b, q.b) << Half::width;
     }
+    [[gnu::always_inline]] static inline pair step(const pair& p, const pair& x, const pair& y) {
+        return {Half::step(p.a, x.a, y.a), Half::step(p.b, x.b, y.b)};
+    }
     [[gnu::always_inline]] static inline scalar smallest(const pair& p) { return Half::smallest(Half::min(p.a, p.b)); }
     [[gnu::always_inline]] static inline scalar largest(const pair& p) { return Half::largest(Half::max(p.a, p.b)); }
     [[gnu::always_inline]] static inline pair without(const pair& p, std::uint32_t lane) {

@@ -60,6 +60,9 @@ struct sse_floats {
     }
     static std::uint32_t less(sse_floats p, sse_floats q) { return bits(_mm_cmplt_ps(p.v, q.v)); }
     static std::uint32_t equal(sse_floats p, sse_floats q) { return bits(_mm_cmpeq_ps(p.v, q.v)); }
+    static sse_floats step(sse_floats p, sse_floats x, sse_floats y) {
+        return {_mm_castsi128_ps(_mm_sub_epi32(_mm_castps_si128(p.v), _mm_castps_si128(_mm_cmplt_ps(x.v, y.v))))};
+    }
     static float smallest(sse_floats p) {
         const __m128 n = _mm_min_ps(p.v, _mm_movehl_ps(p.v, p.v));
         return _mm_cvtss_f32(_mm_min_ss(n, _mm_shuffle_ps(n, n, 1)));
