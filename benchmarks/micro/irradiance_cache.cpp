@@ -60,9 +60,8 @@ void work_out(benchmark::State& state, aglow::estimate_parts parts) {
             grid.set(j, k, rgb{1 + turn}, 1 + static_cast<float>(j));
         }
     }
-    aglow::hessian_scratch<float> scratch;
     const aglow::frame<float> axes{{0, 0, 1}};
-    for (auto _ : state) { benchmark::DoNotOptimize(estimator(grid, {0, 0, 0}, axes, scratch)); }
+    for (auto _ : state) { benchmark::DoNotOptimize(estimator(grid, {0, 0, 0}, axes)); }
     micro::count_queries(state);
 }
 

@@ -46,7 +46,7 @@ aglow::hemisphere_grid<T, T> sampled(const occluded_light& scene, const point3& 
             const double far = hit(x, d, scene.light);
             const double radiance = near > 0 ? scene.occluder_glow : far > 0 ? 1 : scene.sky;
             const double distance = near > 0 ? near : far > 0 ? far : std::numeric_limits<double>::infinity();
-            grid.set(j, k, static_cast<T>(radiance), static_cast<T>(distance));
+            grid.set(j, k, static_cast<T>(radiance), static_cast<T>(distance), d, {0, 0, 1});
         }
     }
     return grid;

@@ -46,7 +46,6 @@ struct gather_point {
 template <Spectrum S, std::floating_point T>
 struct gather_workspace {
     hemisphere_grid<S, T> grid{hemisphere_shape{}};
-    hessian_scratch<T> mesh{};
 };
 
 namespace detail {
@@ -76,11 +75,13 @@ frame<T> gather_hemisphere(const Incoming& incoming, const gather_point<T>& at, 
     for (std::uint32_t k = 0; k < shape.sectors; ++k) {
         for (std::uint32_t j = 0; j < shape.rings; ++j) {
             const vec2<T> u{random.next_2d()};
-            const vec3<T> towards = axes.to_world(hemisphere_direction<T>(shape, j, k, u));
+            const vec3<T> local = hemisphere_direction<T>(shape, j, k, u);
+            const vec3<T> towards = axes.to_world(local);
             const ray<T> r{lift(at.position, at.normal, towards, at.position_error), towards};
             const auto seen = incoming(r, N{numbers.fork(branch++)});
             if constexpr (requires { seen.normal; }) {
-                grid.set(j, k, seen.radiance, static_cast<T>(seen.distance), towards, vec3<T>(seen.normal));
+                const vec3<T> normal = axes.to_local(vec3<T>(seen.normal));
+                grid.set(j, k, seen.radiance, static_cast<T>(seen.distance), local, normal);
             } else {
                 grid.set(j, k, seen.radiance, static_cast<T>(seen.distance));
             }
@@ -95,7 +96,7 @@ template <Spectrum S, std::floating_point T, Numbers N, IncomingLight<T, N> Inco
                                                           const N& numbers, const irradiance_estimator<T>& estimator,
                                                           gather_workspace<S, T>& workspace) {
     const frame<T> axes = gather_hemisphere(incoming, at, numbers, estimator.shape(), workspace.grid);
-    return estimator(workspace.grid, at.position, axes, workspace.mesh);
+    return estimator(workspace.grid, at.position, axes);
 }
 
 /// Irradiance alone, from as few rays as you like: one ray per stratum, nothing allocated, bad rays left out.

@@ -101,8 +101,8 @@ public:
         inverse_distance_[i] = inverse;
     }
 
-    /// The same for a surface with that `normal`, seen in that unit `direction`; both along any axes, the same for the
-    /// whole grid. A normal of zero is none.
+    /// The same for a surface with that `normal`, seen in that unit `direction`; both along the local axes. A normal of
+    /// zero is none.
     void set(std::uint32_t ring, std::uint32_t sector, const S& radiance, T distance, const vec3<T>& direction,
              const vec3<T>& normal) {
         set(ring, sector, radiance, distance);

@@ -50,16 +50,16 @@ public:
     [[nodiscard]] const hemisphere_shape& shape() const { return gradient_weights_.shape(); }
     [[nodiscard]] const estimate_parts& parts() const { return parts_; }
 
-    /// Expects a grid of `shape()`, sampled in `axes`. `scratch` is the calling thread's own.
+    /// Expects a grid of `shape()`, sampled in `axes`.
     template <Spectrum S>
     [[nodiscard]] irradiance_estimate<S, T> operator()(const hemisphere_grid<S, T>& grid, const vec3<T>& position,
-                                                       const frame<T>& axes, hessian_scratch<T>& scratch) const {
+                                                       const frame<T>& axes) const {
         irradiance_estimate<S, T> result;
         result.position = position;
         result.axes = axes;
         result.irradiance = grid.irradiance();
         if (parts_.gradients) { result.gradients = gradients(grid, gradient_weights_); }
-        if (parts_.curvature) { result.curvature = relative_hessian(grid, hessian_weights_, scratch); }
+        if (parts_.curvature) { result.curvature = relative_hessian(grid, hessian_weights_); }
         if (parts_.incident) {
             result.incident = incident_direction(grid);
             result.misfit = linear_misfit(grid, result.incident);

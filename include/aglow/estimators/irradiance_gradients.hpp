@@ -81,11 +81,18 @@ private:
 
 namespace detail {
 
-/// One over the distance of the border between two neighbouring strata: what the border moves by when the point does.
-/// Two planes that meet between the strata, as in the corner of a room, have their border where they meet; else the
-/// nearer one hides the other. Never nearer than the nearer stratum.
+/// The border between two neighbouring strata: one over its distance, and how that changes along it with direction.
 template <std::floating_point T>
-[[nodiscard]] T border_between(T u, const seen_plane<T>& plane, T v, const seen_plane<T>& other) {
+struct seen_border {
+    T inverse_distance;
+    vec3<T> slope;
+};
+
+/// Where the border between two neighbouring strata lies: what it moves by when the point does. Two planes that meet
+/// between the strata, as in the corner of a room, have their border where they meet; else the nearer one hides the
+/// other. Never nearer than the nearer stratum.
+template <std::floating_point T>
+[[nodiscard]] seen_border<T> border_between(T u, const seen_plane<T>& plane, T v, const seen_plane<T>& other) {
     const vec3<T> way = other.direction - plane.direction;
     const T u_there = u + glm::dot(plane.slope, way);
     const T v_here = v - glm::dot(other.slope, way);
@@ -94,9 +101,14 @@ template <std::floating_point T>
     const T apart = in_front - in_front_there;
     const bool meet = (in_front < 0) != (in_front_there < 0);
     const bool alike = std::abs(in_front) + std::abs(in_front_there) < T(1e-3) * (u + v);
-    if (alike) { return (u + v) / 2; }
-    const T nearer = in_front > 0 ? (u + u_there) / 2 : (v + v_here) / 2;
-    return std::clamp(meet ? u + (u_there - u) * (in_front / apart) : nearer, T(0), std::max(u, v));
+    if (alike) { return {(u + v) / 2, (plane.slope + other.slope) / T(2)}; }
+    const T most = std::max(u, v);
+    if (meet) {
+        const T there = u + (u_there - u) * (in_front / apart);
+        return {std::clamp(there, T(0), most), (plane.slope + other.slope) / T(2)};
+    }
+    if (in_front > 0) { return {std::clamp((u + u_there) / 2, T(0), most), plane.slope}; }
+    return {std::clamp((v + v_here) / 2, T(0), most), other.slope};
 }
 
 /// The sums over one sector of Ward & Heckbert's gradients, before they get their directions.
@@ -119,11 +131,12 @@ template <Spectrum S, std::floating_point T>
     sector_sums<S> sums;
     const auto& rings = weights.rings();
     for (std::size_t j = 0; j < rings.size(); ++j) {
-        const T turning = rings[j].turning * border_between(u[j], plane[j], u_before[j], plane_before[j]);
+        const T turning =
+            rings[j].turning * border_between(u[j], plane[j], u_before[j], plane_before[j]).inverse_distance;
         sums.turning = sums.turning + (l[j] + l_before[j] * T(-1)) * turning;
         sums.rotation = sums.rotation + l[j] * rings[j].rotation;
         if (j == 0) { continue; }
-        const T radial = rings[j].radial * border_between(u[j], plane[j], u[j - 1], plane[j - 1]);
+        const T radial = rings[j].radial * border_between(u[j], plane[j], u[j - 1], plane[j - 1]).inverse_distance;
         sums.radial = sums.radial + (l[j] + l[j - 1] * T(-1)) * radial;
     }
     return sums;
