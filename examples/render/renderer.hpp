@@ -101,6 +101,9 @@ private:
         c.fill.seed = options_.seed;
         c.fill.rays = options_.gather_rays.value_or(c.fill.rays);
         c.cache.reach.accuracy = options_.accuracy.value_or(c.cache.reach.accuracy);
+        c.caustics.photons.caustic = options_.caustic_photons.value_or(c.caustics.photons.caustic);
+        c.caustics.photons.seed = options_.seed;
+        c.caustics.density = density();
         return c;
     }
 
@@ -111,7 +114,11 @@ private:
             return aglow::irradiance_caching<World, light_set<T>>{scene_, lights_, scene_.bounds(), eye(), caching(),
                                                                   run_,   told};
         });
-        finish(integrator, nullptr, &integrator.cache());
+        if constexpr (integrator.has_maps) {
+            finish(integrator, &integrator.maps(), &integrator.cache());
+        } else {
+            finish(integrator, nullptr, &integrator.cache());
+        }
     }
     void photon_map() {
         aglow::photon_mapping_options o;

@@ -75,3 +75,11 @@ TEST_CASE("cache_integrators: a furnace is 1 / (1 - rho) bright, its gather rays
         }
     }
 }
+
+TEST_CASE("cache_integrators: a path-traced cache has caustic maps where something can mirror, and only there") {
+    using glass = support::toy_scene<float, float>;
+    using matte = furnace_sphere<float>;
+    STATIC_REQUIRE(irradiance_caching<glass, furnace_light<float>>::has_maps);
+    STATIC_REQUIRE(!irradiance_caching<glass, furnace_light<float>, record_features{.incident = true}>::has_maps);
+    STATIC_REQUIRE(!irradiance_caching<matte, furnace_light<float>>::has_maps);
+}

@@ -190,7 +190,7 @@ TEST_CASE("references: every integrator agrees with the glass box's picture with
     check("photon map", shoot(scene, photon_mapping{scene, scene.lights()}, 8), 5e-3, 0.015);
     check("final gather", shoot(scene, final_gathering{scene, scene.lights(), {.rays = 16}}, 4), 6e-3, 0.01);
     check("irradiance cache", shoot(scene, irradiance_caching{scene, scene.lights(), scene.bounds(), eye_of(scene)}, 8),
-          8e-3, 0.015);
+          5e-3, 0.01);
     check("gather cache", shoot(scene, gather_caching{scene, scene.lights(), scene.bounds(), eye_of(scene)}, 8), 5e-3,
           0.01);
     check("progressive", progressed(scene, 8), 4e-3, 0.015);

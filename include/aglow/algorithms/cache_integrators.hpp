@@ -19,25 +19,23 @@
 
 namespace aglow {
 
-/// What gather rays for records bring by path tracing: mirrors are for them to find.
-template <Scene World, Illuminator Lights>
-struct path_reader {
-    const path_tracer<World, Lights>& tracer;
+/// What gather rays for records bring from `Source`, by path tracing alone: mirrors are for them to find.
+template <typename Source>
+struct ray_reader {
+    Source source;
 
-    template <Numbers N>
-    [[nodiscard]] auto operator()(const ray<scalar_of<World>>& r, const N& numbers) const {
-        return tracer.incoming(r, numbers, emission_rule::indirect);
+    template <typename R, Numbers N>
+    [[nodiscard]] auto operator()(const R& r, const N& numbers) const {
+        return source.incoming(r, numbers, emission_rule::indirect);
     }
 };
 
-/// What gather rays for records read from photon maps. Caustics that were reflected once are left out of the rays,
-/// which would find the small bright spots by chance, and added from their own map: evenly, from many photons.
-template <Scene World, Illuminator Lights>
-struct map_reader {
-    using S = spectrum_of<World>;
-    using T = scalar_of<World>;
-
-    photon_source<World, Lights> source;
+/// What gather rays for records bring from `Source` beside a caustic map. Caustics that were reflected once are left
+/// out of the rays, which would find the small bright spots by chance, and added from their own map: evenly, from many
+/// photons.
+template <typename Source, Spectrum S, std::floating_point T>
+struct caustic_reader {
+    Source source;
     emission_rule caustics;
     const photon_map<S, T>& reflected;
     density_options density;
@@ -100,13 +98,21 @@ template <typename Cache, std::floating_point T>
 
 }  // namespace detail
 
+/// Caustics beside path-traced gather rays, which meet them only by chance: from maps of their own.
+struct caustic_options {
+    photon_options photons{.caustic = 200'000};       ///< 0 reflected: half the caustic; 0 caustic: left to chance
+    density_options density{};                        ///< of the caustic map as it is seen
+    density_options reflected_density{.count = 400};  ///< of the map of reflected caustics, read once a record
+};
+
 /// What a cached picture is made of, whatever answers the gather rays.
 struct caching_options {
     irradiance_cache_options cache{};
     fill_cache_options fill{};
     view_options view{};
-    path_options paths{};   ///< through mirrors and gloss
-    gloss_options gloss{};  ///< of `glossy_caching_options`
+    path_options paths{};        ///< through mirrors and gloss
+    caustic_options caustics{};  ///< of `irradiance_caching`; `gather_caching` tells of all its photons by itself
+    gloss_options gloss{};       ///< of `glossy_caching_options`
 };
 
 namespace detail {
@@ -138,15 +144,29 @@ template <Scene World, typename Eye, typename Reader, Executor Run, typename Fro
 /// records keep where light comes from, 8 bytes more each.
 struct glossy_caching_options : caching_options {};
 
+namespace detail {
+
+/// Whether a scene with such lights may need a caustic map: something mirrors, and the lights can send photons out.
+template <typename World, typename Lights>
+inline constexpr bool may_have_caustics = any(static_lobes<World>, lobe_set::specular) && Emitter<Lights>;
+
+/// Where no caustic map can be, this stands for it.
+struct no_maps {};
+
+}  // namespace detail
+
 /// An integrator: direct light by shadow rays, indirect light from an irradiance cache whose gather rays are
-/// path-traced. Fills the cache for the picture of `eye` when made. Handed `glossy_caching_options`, it reads glossy
-/// lobes from the cache as well. `const`, safe from many threads.
+/// path-traced, and caustics from their own photon map where something mirrors and the lights are an `Emitter` too.
+/// Makes all of it for the picture of `eye`. Handed `glossy_caching_options`, it reads glossy lobes from the cache as
+/// well, caustics too. `const`, safe from many threads.
 template <Scene World, Illuminator Lights, record_features Features = record_features{}>
 class irradiance_caching {
 public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
     using cache_type = frozen_irradiance_cache<spectrum, scalar, Features>;
+    /// Whether caustics can have maps of their own here; not where gloss is read from the cache, which then needs them.
+    static constexpr bool has_maps = detail::may_have_caustics<World, Lights> && !Features.incident;
 
     /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut the filling short: the picture
     /// then gathers afresh where it finds no record.
@@ -155,14 +175,17 @@ public:
                        const caching_options& options = {}, const Run& run = {},
                        const preparation_progress& progress = {})
         : scene_{scene}, lights_{lights}, options_{options}, source_{scene, lights, options.paths} {
-        const path_reader<World, Lights> reader{source_};
-        shared_ = detail::cache_for(scene, scene_bounds, eye, reader, options, run, progress, cache_, filled_);
+        if constexpr (has_maps) {
+            detail::preparation_report report{progress};
+            maps_ = detail::trace_photons(scene, lights, detail::with_reflected(options.caustics.photons), run, report);
+        }
+        shared_ = detail::cache_for(scene, scene_bounds, eye, reader(), options, run, progress, cache_, filled_);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
-        const cache_layer diffuse{cache_, path_reader<World, Lights>{source_}, shared_};
+        const auto diffuse = indirect();
         if constexpr (Features.incident) {
             const glossy_cache_layers layers{scene_, lights_, cache_, diffuse, options_.gloss, options_.paths.faults};
             return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
@@ -172,16 +195,38 @@ public:
         }
     }
 
+    /// The caustic photons and those reflected once.
+    [[nodiscard]] const photon_maps<spectrum, scalar>& maps() const requires has_maps { return maps_; }
+
     [[nodiscard]] const cache_type& cache() const { return cache_; }
     [[nodiscard]] const fill_result& filled() const { return filled_; }
     /// What all that is read from the cache is off by together.
     [[nodiscard]] const shared_error& shared() const { return shared_; }
 
 private:
+    [[nodiscard]] auto reader() const {
+        if constexpr (has_maps) {
+            return caustic_reader<path_tracer<World, Lights>, spectrum, scalar>{
+                source_, detail::left_to_rays(maps_), maps_.reflected, options_.caustics.reflected_density};
+        } else {
+            return ray_reader<path_tracer<World, Lights>>{source_};
+        }
+    }
+    /// The light on diffuse lobes that comes over other surfaces.
+    [[nodiscard]] auto indirect() const {
+        cache_layer cached{cache_, reader(), shared_};
+        if constexpr (has_maps) {
+            return layer_sum{map_layer<spectrum, scalar>{maps_.caustic, options_.caustics.density}, std::move(cached)};
+        } else {
+            return cached;
+        }
+    }
+
     const World& scene_;
     const Lights& lights_;
     caching_options options_;
     path_tracer<World, Lights> source_;
+    std::conditional_t<has_maps, photon_maps<spectrum, scalar>, detail::no_maps> maps_{};
     cache_type cache_{};
     fill_result filled_{};
     shared_error shared_{};
@@ -242,7 +287,7 @@ public:
     [[nodiscard]] const shared_error& shared() const { return shared_; }
 
 private:
-    [[nodiscard]] map_reader<World, Lights> reader() const {
+    [[nodiscard]] caustic_reader<photon_source<World, Lights>, spectrum, scalar> reader() const {
         return {{scene_, lights_, base_.points(), options_.source},
                 base_.caustics(),
                 base_.maps().reflected,

@@ -94,6 +94,23 @@ struct final_gathering_options {
     path_options paths{};    ///< through mirrors and gloss
 };
 
+namespace detail {
+
+/// A gather beside a caustic map needs the caustics' reflection too, or small bright spots speckle it.
+[[nodiscard]] inline photon_options with_reflected(photon_options photons) {
+    if (photons.reflected == 0) { photons.reflected = photons.caustic / 2; }
+    return photons;
+}
+
+/// What gather rays may take for themselves: light over mirrors only where no caustic map shows it.
+template <Spectrum S, std::floating_point T>
+[[nodiscard]] emission_rule left_to_rays(const photon_maps<S, T>& maps) {
+    if (maps.caustic.paths == 0) { return emission_rule::indirect; }
+    return maps.reflected.paths > 0 ? emission_rule::no_reflected : emission_rule::no_caustics;
+}
+
+}  // namespace detail
+
 /// Photon maps and the irradiance that gather rays read: what every gathering integrator stands on. Keeps references to
 /// scene and lights.
 template <Scene World, Illuminator Lights>
@@ -107,7 +124,7 @@ public:
     gather_base(const World& scene, const Lights& lights, const photon_options& photons,
                 const irradiance_options& irradiance, const Run& run = {}, const preparation_progress& progress = {}) {
         detail::preparation_report report{progress};
-        maps_ = detail::trace_photons(scene, lights, with_reflected(photons), run, report);
+        maps_ = detail::trace_photons(scene, lights, detail::with_reflected(photons), run, report);
         irradiance_options told = irradiance;
         told.progress = report.phase(preparation_phase::irradiance, irradiance.progress);
         points_ = precompute_irradiance(scene, lights, maps_, told, run);
@@ -117,18 +134,9 @@ public:
     [[nodiscard]] const irradiance_points<spectrum, scalar>& points() const { return points_; }
 
     /// What gather rays may take for themselves: light over mirrors only where no caustic map shows it.
-    [[nodiscard]] emission_rule caustics() const {
-        if (maps_.caustic.paths == 0) { return emission_rule::indirect; }
-        return maps_.reflected.paths > 0 ? emission_rule::no_reflected : emission_rule::no_caustics;
-    }
+    [[nodiscard]] emission_rule caustics() const { return detail::left_to_rays(maps_); }
 
 private:
-    /// A gather beside a caustic map needs the caustics' reflection too, or small bright spots speckle it.
-    [[nodiscard]] static photon_options with_reflected(photon_options photons) {
-        if (photons.reflected == 0) { photons.reflected = photons.caustic / 2; }
-        return photons;
-    }
-
     photon_maps<spectrum, scalar> maps_;
     irradiance_points<spectrum, scalar> points_;
 };
