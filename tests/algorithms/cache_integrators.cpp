@@ -6,6 +6,7 @@
 
 #include "support/catch.hpp"
 #include "support/furnace.hpp"
+#include "support/scenes.hpp"
 
 using namespace aglow;
 using testing::furnace_light;
