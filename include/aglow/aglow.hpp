@@ -23,6 +23,7 @@
 #include <aglow/core/simd_sse.hpp>
 #include <aglow/core/simd_tables.hpp>
 #include <aglow/core/sobol.hpp>
+#include <aglow/core/stereographic.hpp>
 #include <aglow/core/vec.hpp>
 #include <aglow/core/version.hpp>
 #include <aglow/core/warp.hpp>
@@ -49,6 +50,7 @@
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/containers/kd_select.hpp>
 #include <aglow/containers/kd_tree.hpp>
+#include <aglow/containers/loose_octree.hpp>
 #include <aglow/containers/octree.hpp>
 #include <aglow/containers/packed_spheres.hpp>
 #include <aglow/containers/sphere_search.hpp>
@@ -60,8 +62,10 @@
 #include <aglow/estimators/density.hpp>
 #include <aglow/estimators/edge_derivatives.hpp>
 #include <aglow/estimators/estimate.hpp>
+#include <aglow/estimators/frozen_irradiance_cache.hpp>
 #include <aglow/estimators/hemisphere.hpp>
 #include <aglow/estimators/irradiance_cache.hpp>
+#include <aglow/estimators/irradiance_cache_options.hpp>
 #include <aglow/estimators/irradiance_estimate.hpp>
 #include <aglow/estimators/irradiance_gradients.hpp>
 #include <aglow/estimators/irradiance_hessian.hpp>
@@ -72,9 +76,11 @@
 #include <aglow/estimators/photon.hpp>
 #include <aglow/estimators/photon_map.hpp>
 #include <aglow/estimators/record_blend.hpp>
+#include <aglow/estimators/record_lanes.hpp>
 #include <aglow/estimators/record_neighbours.hpp>
 #include <aglow/estimators/record_reach.hpp>
 #include <aglow/estimators/record_sharing.hpp>
+#include <aglow/estimators/record_view.hpp>
 
 // algorithms: light on its way
 #include <aglow/algorithms/cache_candidates.hpp>

@@ -145,7 +145,14 @@ int wrong_answers_in_any_state(const balls<T>& spheres, std::uint32_t seed, int 
         if (partly.size() == spheres.size() / 3 || partly.size() == spheres.size() / 2) { partly.settle(); }
         partly.insert(static_cast<int>(partly.size()), s.centre, s.radius);
     }
-    return wrong + wrong_answers(partly, spheres, seed, queries);
+    octree<int, T> bit_by_bit;
+    for (const ball<T>& s : spheres) {
+        if (bit_by_bit.size() % 37 == 36) {
+            bit_by_bit.settle_latest([](int) { return std::numeric_limits<T>::max(); });
+        }
+        bit_by_bit.insert(static_cast<int>(bit_by_bit.size()), s.centre, s.radius);
+    }
+    return wrong + wrong_answers(partly, spheres, seed, queries) + wrong_answers(bit_by_bit, spheres, seed, queries);
 }
 
 }  // namespace
@@ -268,6 +275,18 @@ TEST_CASE("octree: the border of a sphere belongs to it", "[octree]") {
     tree.insert(0, {1, 1, 1}, 0.5f);
     CHECK(covering(tree, vec3<float>{1.5f, 1, 1}).size() == 1);
     CHECK(covering(tree, vec3<float>{std::nextafter(1.5f, 2.0f), 1, 1}).empty());
+}
+
+TEST_CASE("octree: a visitor that asks for it hears each item's number, in order", "[octree]") {
+    octree<int> tree;
+    for (int i = 0; i < 100; ++i) { tree.insert(i, {0.01f * static_cast<float>(i), 0, 0}, 0.3f); }
+    std::vector<std::uint32_t> numbers;
+    tree.visit_covering({0.5f, 0, 0}, [&](int item, std::uint32_t number) {
+        CHECK(item == static_cast<int>(number));
+        numbers.push_back(number);
+    });
+    CHECK(numbers.size() > 50);
+    CHECK(std::is_sorted(numbers.begin(), numbers.end()));
 }
 
 TEST_CASE("octree: a visitor that returns false ends the visit", "[octree]") {

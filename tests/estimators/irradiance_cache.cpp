@@ -267,6 +267,40 @@ TEST_CASE("irradiance_cache: growing and frozen, it blends the records that aski
     CHECK(most > 8);
 }
 
+TEST_CASE("irradiance_cache: many places looked up in step get what each gets alone, to the bit") {
+    struct place {
+        vec3<float> position, normal;
+    };
+    random_sampler<float> random{17};
+    for (const int records : {0, 1, 40, 600}) {
+        auto o = by_distance();
+        o.clamp_neighbours = false;
+        cache c{10.f, o};
+        for (int i = 0; i < records; ++i) {
+            c.insert(estimate_at({random.next_1d() * 3, random.next_1d() * 3, 0}, up, rgb{1 + random.next_1d(), 1, 2},
+                                 0.1f + random.next_1d()));
+        }
+        const auto frozen = c.freeze();
+        std::vector<place> places;
+        for (int i = 0; i < 333; ++i) {
+            places.push_back({{random.next_1d() * 4 - 0.5f, random.next_1d() * 3, 0}, i % 5 == 0 ? -up : up});
+        }
+        places[100].position.x = std::numeric_limits<float>::quiet_NaN();
+        std::vector<irradiance_answer<rgb, float>> answers(places.size());
+        frozen.lookup_each(std::span<const place>{places}, std::span{answers});
+        int different = 0, found = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto alone = frozen.lookup(places[i].position, places[i].normal);
+            different += alone.irradiance != answers[i].irradiance || alone.error != answers[i].error ||
+                         alone.weight != answers[i].weight || alone.records != answers[i].records;
+            found += static_cast<int>(answers[i].records);
+        }
+        CHECK(different == 0);
+        CHECK((records == 0 || found > 0));
+        CHECK((records < 600 || found > 32 * 200));  // more than are kept in step
+    }
+}
+
 TEST_CASE("irradiance_cache: with exact gradients a plane of light is reproduced, and its error is told as none") {
     // E = 2 + x - y/2 everywhere.
     const auto light = [](float x, float y) { return 2 + x - y / 2; };

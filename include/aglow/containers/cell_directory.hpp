@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <aglow/core/bounds.hpp>
+#include <aglow/core/simd.hpp>
 #include <aglow/core/vec.hpp>
 
 namespace aglow {
@@ -33,10 +34,21 @@ public:
     /// others.
     template <typename Visitor>
     void visit_near(const vec3<T>& point, Visitor&& visitor) const {
-        if (!all_.contains(point)) { return; }
-        for (std::uint32_t list = list_at(cell_of(point)); list != 0; list = lists_[list]) {
-            visitor(lists_.data() + list + 2, lists_[list + 1]);
-        }
+        visit_lists(list_near(point), visitor);
+    }
+
+    /// The same in three steps, each of which asks for the memory that the next one reads.
+    void expect(const vec3<T>& point) const {
+        if (all_.contains(point)) { simd::prefetch(&starts_[start_of(cell_of(point))]); }
+    }
+    [[nodiscard]] std::uint32_t list_near(const vec3<T>& point) const {
+        const std::uint32_t list = all_.contains(point) ? list_at(cell_of(point)) : 0;
+        simd::prefetch(lists_.data() + list);
+        return list;
+    }
+    template <typename Visitor>
+    void visit_lists(std::uint32_t list, Visitor&& visitor) const {
+        for (; list != 0; list = lists_[list]) { visitor(lists_.data() + list + 2, lists_[list + 1]); }
     }
 
     /// The longest list of a leaf: what a search has to look at where boxes crowd.

@@ -1,22 +1,19 @@
-// Spheres of influence that keep coming, and which of them cover a point; who reads never waits for who writes.
+// Items with a sphere of influence that keep coming, and which of them cover a point; who reads never waits for who
+// writes.
 //
-// A loose octree of buckets: a sphere goes down the path of its centre to the first node with room, at the latest to
-// the node as wide as the sphere, and never moves again. A node is a list of blocks of eight, published by one atomic
-// store; a search descends only where the largest radius below a node can reach. Loose octrees: Ulrich 2000.
+// What has come lately is in the trees of a loose_octree; what the owner lets settle is packed for faster searches.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include <aglow/containers/loose_octree.hpp>
 #include <aglow/containers/packed_spheres.hpp>
 #include <aglow/containers/sphere_search.hpp>
 #include <aglow/containers/stable_array.hpp>
@@ -47,6 +44,10 @@ struct octree_refusals {
     std::size_t radius = 0;
     std::size_t centre = 0;
 };
+
+/// What can be shown an item, alone or with its number.
+template <typename Visitor, typename Item>
+concept ItemVisitor = std::invocable<Visitor&, const Item&> || std::invocable<Visitor&, const Item&, std::uint32_t>;
 
 /// Items with a sphere of influence each. Tells whose sphere covers a point, and whose centre is near one.
 ///
@@ -83,15 +84,15 @@ public:
             return ++refused_.centre, octree_insertion{octree_status::bad_centre, 0};
         }
         const std::uint32_t index = items_.append(std::move(item));
-        append(home(centre, radius), {centre, limit2_of(radius), index});
+        latest_.insert({centre, limit2_of(radius), index}, radius);
         published_.store(index + 1, std::memory_order_release);
         return {octree_status::inserted, index};
     }
 
-    /// Calls `visitor(const Item&)` for each item whose sphere, as inserted, covers `point`: distance <= radius.
-    /// A visitor that returns bool ends the visit by false.
+    /// Calls `visitor(const Item&)`, or `visitor(const Item&, number)`, for each item whose sphere, as inserted, covers
+    /// `point`: distance <= radius. A visitor that returns bool ends the visit by false.
     template <typename Visitor>
-        requires std::invocable<Visitor&, const Item&>
+        requires ItemVisitor<Visitor, Item>
     void visit_covering(const vec3<T>& point, Visitor&& visitor) const {
         sphere_hits<T> found;
         search(covering_question<T>{point}, found);
@@ -101,7 +102,7 @@ public:
     /// As above for spheres that have shrunk: `radius_of(const Item&)` tells an item's present radius, at most the one
     /// at insertion. If items shrink while others search, let both sides use `std::atomic_ref` on the item's radius.
     template <typename RadiusOf, typename Visitor>
-        requires std::invocable<RadiusOf&, const Item&> && std::invocable<Visitor&, const Item&>
+        requires std::invocable<RadiusOf&, const Item&> && ItemVisitor<Visitor, Item>
     void visit_covering(const vec3<T>& point, RadiusOf&& radius_of, Visitor&& visitor) const {
         sphere_hits<T, true> found;
         search(covering_question<T>{point}, found);
@@ -112,7 +113,7 @@ public:
     /// Calls `visitor`, as `visit_covering` does, for each item whose centre lies within `distance` of `point`, borders
     /// included; for none if `distance` is negative or NaN.
     template <typename Visitor>
-        requires std::invocable<Visitor&, const Item&>
+        requires ItemVisitor<Visitor, Item>
     void visit_within(const vec3<T>& point, T distance, Visitor&& visitor) const {
         if (!(distance >= 0)) { return; }
         sphere_hits<T> found;
@@ -121,8 +122,7 @@ public:
     }
 
     /// Packs what has come so far for faster searches and less memory; answers, order and addresses stay. O(n log n),
-    /// in sequence. Worth it when items have doubled in number, or come no more. Expects that nobody searches
-    /// meanwhile.
+    /// in sequence. Worth it when items come no more. Expects that nobody searches meanwhile.
     void settle() {
         settle([](const Item&) { return std::numeric_limits<T>::max(); });
     }
@@ -130,21 +130,14 @@ public:
     /// The same, and takes over the present radii, `radius_of(const Item&)`, where they have shrunk.
     template <typename RadiusOf>
         requires std::invocable<RadiusOf&, const Item&>
-    void settle(RadiusOf&& radius_of) {
-        std::vector<stored_sphere<T>> spheres;
-        spheres.reserve(size());
-        visit_spheres([&](stored_sphere<T> sphere) {
-            const T radius = radius_of(items_[sphere.item]);
-            if (usable_radius(radius)) { sphere.limit2 = std::min(sphere.limit2, limit2_of(radius)); }
-            spheres.push_back(sphere);
-        });
-        const auto near = std::partition(spheres.begin(), spheres.end(),
-                                         [](const stored_sphere<T>& s) { return max_abs(s.centre) >= farthest; });
-        forget_trees();
-        for (auto far = spheres.begin(); far != near; ++far) { append(outside_, *far); }
-        spheres.erase(spheres.begin(), near);
-        settled_ = packed_spheres<T>{std::move(spheres)};
-    }
+    void settle(RadiusOf&& radius_of) { pack(radius_of, std::numeric_limits<std::size_t>::max()); }
+
+    /// The same for what has come lately: packs it by itself, together with packs that are not much larger, so that
+    /// there are never more packs than the logarithm of the items. Worth it each time that items have grown by a small
+    /// part; then an item is packed O(log n) times in all.
+    template <typename RadiusOf>
+        requires std::invocable<RadiusOf&, const Item&>
+    void settle_latest(RadiusOf&& radius_of) { pack(radius_of, 8); }
 
     /// How many items are in; from any thread.
     [[nodiscard]] std::uint32_t size() const { return published_.load(std::memory_order_acquire); }
@@ -162,308 +155,56 @@ public:
 
     /// Bytes taken from the heap, items included; for the writer.
     [[nodiscard]] std::size_t bytes() const {
-        return items_.bytes() + settled_.bytes() + links_.bytes() + bricks_.bytes() + roots_.bytes();
+        std::size_t sum = items_.bytes() + latest_.bytes() + settled_.capacity() * sizeof(packed_spheres<T>);
+        for (const packed_spheres<T>& pack : settled_) { sum += pack.bytes(); }
+        return sum;
     }
 
 private:
-    static constexpr unsigned lanes = 8;
-    using block = sphere_block<T, lanes>;
-    using word = std::atomic<std::uint32_t>;
-
-    // A block and what hangs on it: `next` is the word of the block before this one (always full), `length` counts both
-    // and all before.
-    struct link : block {
-        std::uint32_t next;
-        std::uint32_t length;
-    };
-
-    // What is in a cube. `spheres`: (number of the newest block << 4 | how many of its lanes are in use), 0 if none.
-    // `children`: the brick of its eight octants, 0 if none.
-    struct cell {
-        word spheres{0};
-        word children{0};
-    };
-
-    // Eight octants; no sphere in or below any of them is larger than `largest`.
-    struct brick {
-        cell octants[8];
-        std::atomic<T> largest{0};
-    };
-
-    // Where a tree begins, and the cube it covers. Roots that were outgrown stay for the readers that look at them.
-    struct root {
-        vec3<T> middle;
-        T half;
-        std::uint32_t number = 0;
-        cell inside{};
-    };
-
-    template <typename Cell>
-    struct place {
-        vec3<T> middle;
-        T half;
-        Cell* inside;
-
-        [[nodiscard]] place octant(unsigned i, Cell* child) const {
-            const T quarter = half / 2;
-            return {
-                middle + vec3<T>{i & 1u ? quarter : -quarter, i & 2u ? quarter : -quarter, i & 4u ? quarter : -quarter},
-                quarter, child};
-        }
-    };
-
-    static constexpr unsigned lane_bits = 4;
-    static constexpr unsigned lane_mask = 15;
-    // A node takes sixteen spheres before it hands on to its octants.
-    static constexpr std::uint32_t blocks_before_octants = 2;
-    // A sphere that would double the root more often than this waits outside, if there is room.
-    static constexpr int patient_doublings = 12;
-    static constexpr std::uint32_t blocks_outside = 8;
-    // A cube is at least this wide beside its coordinates, which leaves its midpoint some bits to be exact.
-    static constexpr T finest = 8 * std::numeric_limits<T>::epsilon();
-    static constexpr T farthest = std::numeric_limits<T>::max() / 32;
-
     [[nodiscard]] static bool usable_radius(T radius) {
         return is_finite(radius) && radius > 0 && is_finite(radius * radius) &&
                radius * radius >= std::numeric_limits<T>::min();
     }
 
-    // ---- writing ----------------------------------------------------------------------------------------------------
-
-    // The cell that takes a new sphere.
-    [[nodiscard]] cell& home(const vec3<T>& centre, T radius) {
-        const unsigned signs = octant_of(vec3<T>{0}, centre);
-        const root* top = tops_[signs].load(std::memory_order_relaxed);
-        if (belongs_outside(top, centre, radius)) { return outside_; }
-        if (!top) { top = plant(signs, centre, radius); }
-        while (!holds(*top, centre, radius)) { top = grow(signs, *top); }
-        raise(largest_, radius);
-        place<cell> at{top->middle, top->half, &roots_[top->number].inside};
-        while (full(*at.inside, blocks_before_octants) && at.half / 2 >= radius && divisible(at)) {
-            brick& below = octants_of(*at.inside);
-            raise(below.largest, radius);
-            const unsigned i = octant_of(at.middle, centre);
-            at = at.octant(i, &below.octants[i]);
+    // Packs what is in the trees with the latest packs, as long as these are at most `ratio` times as large.
+    template <typename RadiusOf>
+    void pack(RadiusOf& radius_of, std::size_t ratio) {
+        std::vector<stored_sphere<T>> spheres;
+        loose_octree<T> rest;
+        const auto take = [&](stored_sphere<T> sphere) {
+            if (loose_octree<T>::is_far(sphere.centre)) { return rest.insert_outside(sphere); }
+            const T radius = radius_of(items_[sphere.item]);
+            if (usable_radius(radius)) { sphere.limit2 = std::min(sphere.limit2, limit2_of(radius)); }
+            spheres.push_back(sphere);
+        };
+        latest_.visit_all(take);
+        latest_ = std::move(rest);
+        while (!settled_.empty() && settled_.back().size() / ratio <= spheres.size()) {
+            settled_.back().visit_all(take);
+            settled_.pop_back();
         }
-        return *at.inside;
+        if (!spheres.empty()) { settled_.emplace_back(std::move(spheres)); }
     }
-
-    static void raise(std::atomic<T>& largest, T radius) {
-        if (largest.load(std::memory_order_relaxed) < radius) { largest.store(radius, std::memory_order_relaxed); }
-    }
-
-    [[nodiscard]] static bool divisible(const place<cell>& at) { return at.half / 2 >= max_abs(at.middle) * finest; }
-
-    [[nodiscard]] static unsigned octant_of(const vec3<T>& middle, const vec3<T>& p) {
-        return unsigned{p.x >= middle.x} | unsigned{p.y >= middle.y} << 1 | unsigned{p.z >= middle.z} << 2;
-    }
-
-    [[nodiscard]] static bool holds(const root& top, const vec3<T>& centre, T radius) {
-        const vec3<T> low = top.middle - top.half;
-        const vec3<T> high = top.middle + top.half;
-        return radius <= top.half && centre.x >= low.x && centre.x < high.x && centre.y >= low.y && centre.y < high.y &&
-               centre.z >= low.z && centre.z < high.z;
-    }
-
-    [[nodiscard]] bool belongs_outside(const root* top, const vec3<T>& centre, T radius) const {
-        if (max_abs(centre) >= farthest) { return true; }
-        if (!top || full(outside_, blocks_outside)) { return false; }
-        return (max_abs(centre - top->middle) + radius) / top->half > T(1 << patient_doublings);
-    }
-
-    // The first root: a cube at least twice as wide as the sphere.
-    const root* plant(unsigned signs, const vec3<T>& centre, T radius) {
-        const T least = std::max(radius, max_abs(centre) * finest);
-        const T half = std::ldexp(T(1), std::ilogb(least) + 2);
-        return publish(signs, roots_.append(cube_around(centre, half), half));
-    }
-
-    // A root twice as wide around the present one, which becomes an octant of it.
-    const root* grow(unsigned signs, const root& old) {
-        const vec3<T> middle = cube_around(old.middle, 2 * old.half);
-        const std::uint32_t number = bricks_.append();
-        brick& below = bricks_[number];
-        copy(old.inside, below.octants[octant_of(middle, old.middle)]);
-        below.largest.store(largest_.load(std::memory_order_relaxed), std::memory_order_relaxed);
-        const std::uint32_t made = roots_.append(middle, 2 * old.half);
-        roots_[made].inside.children.store(number + 1, std::memory_order_release);
-        return publish(signs, made);
-    }
-
-    // The midpoint of the cube around `p` on the grid of cubes that wide. Such cubes have no zero inside, and their
-    // midpoints are exact.
-    [[nodiscard]] static vec3<T> cube_around(const vec3<T>& p, T half) {
-        const T width = 2 * half;
-        return {(std::floor(p.x / width) + T(0.5)) * width, (std::floor(p.y / width) + T(0.5)) * width,
-                (std::floor(p.z / width) + T(0.5)) * width};
-    }
-
-    const root* publish(unsigned signs, std::uint32_t number) {
-        roots_[number].number = number;
-        tops_[signs].store(&roots_[number], std::memory_order_release);
-        return &roots_[number];
-    }
-
-    static void copy(const cell& from, cell& to) {
-        to.spheres.store(from.spheres.load(std::memory_order_relaxed), std::memory_order_relaxed);
-        to.children.store(from.children.load(std::memory_order_relaxed), std::memory_order_relaxed);
-    }
-
-    [[nodiscard]] brick& octants_of(cell& parent) {
-        const std::uint32_t known = parent.children.load(std::memory_order_relaxed);
-        if (known != 0) { return bricks_[known - 1]; }
-        const std::uint32_t number = bricks_.append();
-        parent.children.store(number + 1, std::memory_order_release);
-        return bricks_[number];
-    }
-
-    [[nodiscard]] bool full(const cell& at, std::uint32_t blocks) const {
-        const std::uint32_t newest = at.spheres.load(std::memory_order_relaxed);
-        return (newest & lane_mask) == lanes && links_[newest >> lane_bits].length >= blocks;
-    }
-
-    void append(cell& at, const stored_sphere<T>& sphere) {
-        std::uint32_t newest = at.spheres.load(std::memory_order_relaxed);
-        if (newest == 0 || (newest & lane_mask) == lanes) { newest = add_block(newest); }
-        links_[newest >> lane_bits].set(newest & lane_mask, sphere);
-        at.spheres.store(newest + 1, std::memory_order_release);
-    }
-
-    // The word of a new empty block that follows `before`.
-    [[nodiscard]] std::uint32_t add_block(std::uint32_t before) {
-        const std::uint32_t length = before == 0 ? 1 : links_[before >> lane_bits].length + 1;
-        if (links_.size() >> (32 - lane_bits) != 0) { throw std::length_error("aglow::octree: too many items"); }
-        const std::uint32_t number = links_.append();
-        links_[number].next = before;
-        links_[number].length = length;
-        return number << lane_bits;
-    }
-
-    // ---- packing ----------------------------------------------------------------------------------------------------
-
-    template <typename Visitor>
-    void visit_spheres(Visitor&& visitor) const {
-        settled_.visit_all(visitor);
-        visit_list(outside_, visitor);
-        for (const auto& top : tops_) {
-            if (top.load()) { visit_list(top.load()->inside, visitor); }
-        }
-        for (std::uint32_t i = 0; i < bricks_.size(); ++i) {
-            for (const cell& octant : bricks_[i].octants) { visit_list(octant, visitor); }
-        }
-    }
-
-    template <typename Visitor>
-    void visit_list(const cell& at, Visitor&& visitor) const {
-        for (std::uint32_t newest = at.spheres.load(); newest != 0; newest = links_[newest >> lane_bits].next) {
-            for (std::uint32_t i = 0; i < (newest & lane_mask); ++i) { visitor(links_[newest >> lane_bits].at(i)); }
-        }
-    }
-
-    void forget_trees() {
-        for (auto& top : tops_) { top.store(nullptr); }
-        copy(cell{}, outside_);
-        largest_.store(0);
-        links_ = stable_array<link>{};
-        bricks_ = stable_array<brick>{};
-        roots_ = stable_array<root>{};
-    }
-
-    // ---- reading ----------------------------------------------------------------------------------------------------
 
     template <typename Question, bool D>
     void search(const Question& question, sphere_hits<T, D>& found) const {
-        settled_.search(question, found);
-        ask_list(outside_, question, found);
-        const T reach = question.reach(largest_.load(std::memory_order_relaxed));
-        const place<const cell> everything{vec3<T>{0}, std::numeric_limits<T>::max(), nullptr};
-        for (unsigned near = octants_near(everything, question.point, reach); near != 0; near &= near - 1) {
-            const root* const top = tops_[std::countr_zero(near)].load(std::memory_order_acquire);
-            if (top) { descend({top->middle, top->half, &top->inside}, question, found); }
-        }
-    }
-
-    template <typename Question, bool D>
-    void ask_list(const cell& at, const Question& question, sphere_hits<T, D>& found) const {
-        std::uint32_t newest = at.spheres.load(std::memory_order_acquire);
-        while (newest != 0) {
-            const link& here = links_[newest >> lane_bits];
-            found.reserve(lanes);
-            ask(here, newest & lane_mask, question, found);
-            newest = here.next;
-        }
-    }
-
-    // Depth first on a small stack of its own; a tree too deep for it goes on in a call of this function.
-    template <typename Question, bool D>
-    void descend(const place<const cell>& from, const Question& question, sphere_hits<T, D>& found) const {
-        constexpr std::size_t room = 64;
-        place<const cell> waiting[room];
-        std::size_t count = 0;
-        waiting[count++] = from;
-        while (count != 0) {
-            const place<const cell> at = waiting[--count];
-            ask_list(*at.inside, question, found);
-            const std::uint32_t children = at.inside->children.load(std::memory_order_acquire);
-            if (children == 0) { continue; }
-            const brick& below = bricks_[children - 1];
-            for (unsigned near =
-                     octants_near(at, question.point, question.reach(below.largest.load(std::memory_order_relaxed)));
-                 near != 0; near &= near - 1) {
-                const auto i = static_cast<unsigned>(std::countr_zero(near));
-                const place<const cell> child = at.octant(i, &below.octants[i]);
-                if (count < room) {
-                    waiting[count++] = child;
-                } else {
-                    descend(child, question, found);
-                }
-            }
-        }
-    }
-
-    // One bit for each octant that may hold a centre within `reach` of `p` along every axis.
-    [[nodiscard]] static unsigned octants_near(const place<const cell>& at, const vec3<T>& p, T reach) {
-        return halves_near(at.middle.x, at.half, p.x, reach, 0x55u) &
-               halves_near(at.middle.y, at.half, p.y, reach, 0x33u) &
-               halves_near(at.middle.z, at.half, p.z, reach, 0x0fu);
-    }
-
-    [[nodiscard]] static unsigned halves_near(T middle, T half, T p, T reach, unsigned lower) {
-        const T low = p - reach;
-        const T high = p + reach;
-        const bool in_lower = low < middle && high >= middle - half;
-        const bool in_upper = high >= middle && low < middle + half;
-        return (in_lower ? lower : 0u) | (in_upper ? lower ^ 0xffu : 0u);
+        for (const packed_spheres<T>& pack : settled_) { pack.search(question, found); }
+        latest_.search(question, found);
     }
 
     void swap(octree& other) noexcept {
         std::swap(items_, other.items_);
         std::swap(settled_, other.settled_);
-        std::swap(links_, other.links_);
-        std::swap(bricks_, other.bricks_);
-        std::swap(roots_, other.roots_);
-        cell kept;
-        copy(outside_, kept);
-        copy(other.outside_, outside_);
-        copy(kept, other.outside_);
-        for (unsigned i = 0; i < 8; ++i) { tops_[i].store(other.tops_[i].exchange(tops_[i].load())); }
+        std::swap(latest_, other.latest_);
         published_.store(other.published_.exchange(published_.load()));
-        largest_.store(other.largest_.exchange(largest_.load()));
         std::swap(refused_, other.refused_);
     }
 
     stable_array<Item> items_{};
-    packed_spheres<T> settled_{};  // the spheres of before the last settle(); the others are in the trees
-    stable_array<link> links_{};
-    stable_array<brick> bricks_{};
-    stable_array<root> roots_{};
-    // One tree for each combination of signs, so that a cube need never grow across zero.
-    std::atomic<const root*> tops_[8] = {};
-    // Spheres much larger than their root, or much farther than it should grow for them.
-    cell outside_{};
-    // No sphere in the trees is larger.
-    std::atomic<T> largest_{0};
-    word published_{0};
+    // Each much larger than the next; the latest spheres are in the trees.
+    std::vector<packed_spheres<T>> settled_{};
+    loose_octree<T> latest_{};
+    std::atomic<std::uint32_t> published_{0};
     octree_refusals refused_{};
 };
 

@@ -29,7 +29,7 @@ template <typename T>
 class packed_spheres {
 public:
     packed_spheres() = default;
-    explicit packed_spheres(std::vector<stored_sphere<T>> spheres) {
+    explicit packed_spheres(std::vector<stored_sphere<T>> spheres) : size_{spheres.size()} {
         std::vector<bounds<T>> boxes;
         for (const std::span<stored_sphere<T>> alike : by_size(spheres)) { roots_.push_back(plant(alike, boxes)); }
         blocks_.shrink_to_fit();
@@ -47,9 +47,26 @@ public:
     template <bool D>
     void search(const covering_question<T>& question, sphere_hits<T, D>& found) const {
         if (directory_.longest() > crowded) { return search_trees(question, found); }
-        directory_.visit_near(question.point, [&](const std::uint32_t* numbers, std::uint32_t count) {
-            simd::run_best<T, ask_blocks>(blocks_.data(), numbers, count, question, found);
-        });
+        ask_lists(directory_.list_near(question.point), question, found);
+    }
+
+    /// Calls `found(i, hits)` with the spheres that cover `point_at(i)`, for i below `count`, in order. Goes on with
+    /// many points in step and asks for memory ahead: of large indices, twice as fast as one by one and more.
+    template <typename PointAt, typename Found>
+    void search_each(std::size_t count, const PointAt& point_at, Found&& found) const {
+        constexpr std::size_t some = 16;
+        std::array<std::uint32_t, some> lists;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i % some == 0) { expect(i, std::min(some, count - i), point_at, lists); }
+            sphere_hits<T> hits;
+            const covering_question<T> question{point_at(i)};
+            if (directory_.longest() > crowded) {
+                search_trees(question, hits);
+            } else {
+                ask_lists(lists[i % some], question, hits);
+            }
+            found(i, hits.items());
+        }
     }
 
     /// Calls `visitor(const stored_sphere<T>&)` for every sphere.
@@ -68,6 +85,8 @@ public:
             for (unsigned i = 0; i < lanes && b.limit2[i] > 0; ++i) { b.item[i] = next(b.item[i]); }
         }
     }
+
+    [[nodiscard]] std::size_t size() const { return size_; }
 
     /// Bytes taken from the heap.
     [[nodiscard]] std::size_t bytes() const {
@@ -94,6 +113,31 @@ private:
     };
 
     // ---- search -----------------------------------------------------------------------------------------------------
+
+    template <bool D>
+    void ask_lists(std::uint32_t list, const covering_question<T>& question, sphere_hits<T, D>& found) const {
+        directory_.visit_lists(list, [&](const std::uint32_t* numbers, std::uint32_t count) {
+            simd::run_best<T, ask_blocks>(blocks_.data(), numbers, count, question, found);
+        });
+    }
+
+    // Finds the lists of `count` points and asks for the blocks in them.
+    template <typename PointAt, std::size_t Some>
+    void expect(std::size_t first, std::size_t count, const PointAt& point_at,
+                std::array<std::uint32_t, Some>& lists) const {
+        for (std::size_t i = 0; i < count; ++i) { directory_.expect(point_at(first + i)); }
+        for (std::size_t i = 0; i < count; ++i) { lists[i] = directory_.list_near(point_at(first + i)); }
+        for (std::size_t i = 0; i < count; ++i) {
+            directory_.visit_lists(lists[i], [&](const std::uint32_t* numbers, std::uint32_t boxes) {
+                for (std::uint32_t k = 0; k < boxes; ++k) { expect(blocks_[numbers[k]]); }
+            });
+        }
+    }
+    static void expect(const block& b) {
+        for (std::size_t at = 0; at < sizeof(block); at += 64) {
+            simd::prefetch(reinterpret_cast<const char*>(&b) + at);
+        }
+    }
 
     template <typename Question, bool D>
     void search_trees(const Question& question, sphere_hits<T, D>& found) const {
@@ -291,6 +335,7 @@ private:
         return all;
     }
 
+    std::size_t size_ = 0;
     std::vector<block> blocks_{};
     std::vector<node> nodes_{};
     std::vector<std::uint32_t> roots_{};

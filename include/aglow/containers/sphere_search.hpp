@@ -118,15 +118,23 @@ public:
     /// What was found, in the order of finding.
     [[nodiscard]] std::span<const std::uint32_t> items() const { return {items_, count_}; }
 
-    /// Calls `visitor(items[i])` for the found i, in ascending order; the visitor may return false to stop.
+    /// Calls `visitor(items[i])` or `visitor(items[i], i)` for the found i, in ascending order; the visitor may return
+    /// false to stop.
     template <typename Items, typename Visitor>
     void show(const Items& items, Visitor& visitor) {
         sort();
-        for (std::size_t i = 0; i < count_; ++i) {
-            if constexpr (std::is_void_v<decltype(visitor(items[items_[i]]))>) {
-                visitor(items[items_[i]]);
+        const auto call = [&](std::uint32_t i) {
+            if constexpr (std::is_invocable_v<Visitor&, decltype(items[i]), std::uint32_t>) {
+                return visitor(items[i], i);
             } else {
-                if (!visitor(items[items_[i]])) { return; }
+                return visitor(items[i]);
+            }
+        };
+        for (std::size_t i = 0; i < count_; ++i) {
+            if constexpr (std::is_void_v<decltype(call(0u))>) {
+                call(items_[i]);
+            } else {
+                if (!call(items_[i])) { return; }
             }
         }
     }

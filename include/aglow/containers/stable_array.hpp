@@ -70,7 +70,7 @@ public:
 
 private:
     // Chunks come in generations of sixteen equal ones; those of generation g hold 2^(first_bits + g) elements.
-    static constexpr int first_bits = 4;
+    static constexpr int first_bits = 2;
     static constexpr std::uint32_t offset_of_first = 16u << first_bits;
     static constexpr std::uint32_t limit = 0u - 4096u;
     static constexpr std::size_t generations = 32 - (first_bits + 4);

@@ -7,6 +7,26 @@
 
 namespace aglow {
 
+/// What turns the world into the frame of a unit normal, by half the work of its axes where these are not asked for.
+/// Continuous on each side of the equator z = 0, where x and y jump (Duff et al. 2017, Building an Orthonormal Basis,
+/// Revisited, listing 3).
+template <typename T>
+struct tilt {
+    vec3<T> normal;
+    T side;  ///< of the equator: 1 or -1
+    T a;     ///< -1 / (side + normal.z)
+
+    tilt(const vec3<T>& n, T its_side, T its_a) : normal{n}, side{its_side}, a{its_a} {}
+    explicit tilt(const vec3<T>& n) : normal{n}, side{std::copysign(T(1), n.z)}, a{T(-1) / (side + n.z)} {}
+
+    /// A vector of the world in the frame's coordinates.
+    [[nodiscard]] vec3<T> to_local(const vec3<T>& v) const {
+        const T along = normal.x * v.x + normal.y * v.y;
+        const T lean = a * along - v.z;
+        return {v.x + side * (normal.x * lean), side * v.y + normal.y * lean, along + normal.z * v.z};
+    }
+};
+
 /// Right-handed orthonormal axes whose `z` is a given unit direction, usually a surface normal.
 template <typename T>
 struct frame {
@@ -16,14 +36,12 @@ struct frame {
 
     frame() = default;
 
-    /// Expects unit `normal`. Continuous on each side of the equator z = 0, where x and y jump (Duff et al. 2017,
-    /// Building an Orthonormal Basis, Revisited, listing 3).
-    explicit frame(const vec3<T>& normal) : z{normal} {
-        const T sign = std::copysign(T(1), normal.z);
-        const T a = T(-1) / (sign + normal.z);
-        const T b = normal.x * normal.y * a;
-        x = {T(1) + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
-        y = {b, sign + normal.y * normal.y * a, -normal.y};
+    /// Expects unit `normal`.
+    explicit frame(const vec3<T>& normal) : frame{tilt<T>{normal}} {}
+    explicit frame(const tilt<T>& t) : z{t.normal} {
+        const T b = z.x * z.y * t.a;
+        x = {T(1) + t.side * z.x * z.x * t.a, t.side * b, -t.side * z.x};
+        y = {b, t.side + z.y * z.y * t.a, -z.y};
     }
 
     /// A vector given in this frame's coordinates, in the world's.

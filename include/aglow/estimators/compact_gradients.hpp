@@ -108,19 +108,25 @@ public:
     }
 
     [[nodiscard]] S extrapolate(const S& irradiance, const record_offset<float>& at) const {
-        const std::array<float, 4> k{at.x * step, at.y * step, at.turn_x * (steepest_turn * step),
-                                     at.turn_y * (steepest_turn * step)};
+        const std::array<float, 4> k = factors(at);
         S change{};
         if constexpr (bands == 1) {
             change = sum(0, k);
         } else {
             change = S{sum(0, k), sum(1, k), sum(2, k)};
         }
-        // One factor for all bands keeps the hue of the change.
-        const float least = detail::lowest_band(change);
-        return least < -lowest ? irradiance + irradiance * change * (lowest / -least)
-                               : irradiance + irradiance * change;
+        return irradiance + irradiance * change * (lowest / drop(detail::lowest_band(change)));
     }
+
+    /// What the codes of a band are weighed by at an offset: the sum is the change relative to the band's irradiance.
+    [[nodiscard]] static std::array<float, 4> factors(const record_offset<float>& at) {
+        return {at.x * step, at.y * step, at.turn_x * (steepest_turn * step), at.turn_y * (steepest_turn * step)};
+    }
+
+    /// The changes of all bands are multiplied by `lowest / drop`, given the lowest of them: one factor keeps their
+    /// hue.
+    [[nodiscard]] static float drop(float least) { return least < -lowest ? -least : lowest; }
+    static constexpr float lowest = 0.95f;  ///< never takes all away
 
     [[nodiscard]] compact_gradients rescaled(float from, float to) const {
         compact_gradients result = *this;
@@ -135,7 +141,6 @@ private:
     static constexpr std::size_t bands = detail::packed_bands<S>;
     static constexpr float step = 1 / 32767.f;
     static constexpr float steepest_turn = 4;  // a quarter radian may change everything
-    static constexpr float lowest = 0.95f;     // and never take all away
 
     /// Caps the length, so that the change within the radius never exceeds the irradiance, and keeps the direction.
     void set_translation(std::size_t b, float x, float y) {

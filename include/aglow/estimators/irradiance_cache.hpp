@@ -10,21 +10,19 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <aglow/concepts/spectrum.hpp>
 #include <aglow/containers/octree.hpp>
-#include <aglow/containers/packed_spheres.hpp>
-#include <aglow/containers/sphere_search.hpp>
+#include <aglow/containers/stable_array.hpp>
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/vec.hpp>
+#include <aglow/estimators/frozen_irradiance_cache.hpp>
+#include <aglow/estimators/irradiance_cache_options.hpp>
 #include <aglow/estimators/irradiance_estimate.hpp>
 #include <aglow/estimators/irradiance_record.hpp>
 #include <aglow/estimators/record_blend.hpp>
@@ -33,21 +31,6 @@
 #include <aglow/estimators/record_sharing.hpp>
 
 namespace aglow {
-
-/// How records reach, are found and clamp each other.
-struct irradiance_cache_options {
-    record_reach_options reach{};
-    record_lookup_options lookup{};
-
-    /// A record reaches no farther than a neighbour's reach and the way to it, so what one of them saw near counts for
-    /// all around (Krivanek et al. 2006).
-    bool clamp_neighbours{true};
-
-    /// When frozen, each record takes the irradiance that it and its neighbours' extrapolations agree on, weighed by
-    /// noise and by how wrong they proved. Worth as much as half as many rays again where radiance is noisy. Needs
-    /// noise to be kept.
-    bool smoothing{true};
-};
 
 /// What became of an estimate handed to a cache.
 enum class record_status {
@@ -60,133 +43,25 @@ enum class record_status {
 
 namespace detail {
 
-/// Throws `std::invalid_argument` that names the setting and its value.
-inline void expect_setting(bool good, const char* name, double value) {
-    if (!good) { throw std::invalid_argument("aglow: " + std::string{name} + " is " + std::to_string(value)); }
-}
-
-inline void check(const irradiance_cache_options& o) {
-    // Written so that NaN is refused, under -ffast-math too.
-    const auto positive = [](double x) { return is_finite(x) && x > 0; };
-    expect_setting(positive(o.reach.accuracy), "accuracy", o.reach.accuracy);
-    expect_setting(positive(o.reach.minimum_radius), "minimum_radius", o.reach.minimum_radius);
-    expect_setting(positive(o.reach.maximum_radius) && o.reach.maximum_radius >= o.reach.minimum_radius,
-                   "maximum_radius", o.reach.maximum_radius);
-    expect_setting(is_finite(o.reach.minimum_footprints) && o.reach.minimum_footprints >= 0, "minimum_footprints",
-                   o.reach.minimum_footprints);
-    expect_setting(positive(o.reach.geometric_limit), "geometric_limit", o.reach.geometric_limit);
-    expect_setting(is_finite(o.reach.maximum_ratio) && o.reach.maximum_ratio >= 1, "maximum_ratio",
-                   o.reach.maximum_ratio);
-    expect_setting(positive(o.lookup.normal_limit) && o.lookup.normal_limit < 1.5, "normal_limit (in radians)",
-                   o.lookup.normal_limit);
-    expect_setting(positive(o.lookup.plane_tolerance), "plane_tolerance", o.lookup.plane_tolerance);
-    expect_setting(is_finite(o.lookup.minimum_weight) && o.lookup.minimum_weight >= 0, "minimum_weight",
-                   o.lookup.minimum_weight);
-}
-
-}  // namespace detail
-
-/// A finished irradiance cache: only to be asked. Safe from many threads.
-template <Spectrum S, std::floating_point T = band_of<S>, record_features Features = record_features{}>
-class frozen_irradiance_cache {
+/// A length between two others in a byte, rounded upwards to one of 256 that go up by the same factor.
+template <std::floating_point T>
+class length_between {
 public:
-    using record = irradiance_record<S, T, Features>;
-    using spectrum = S;
-    using scalar = T;
-
-    /// A record, and its error at its own radius relative to its irradiance.
-    struct item {
-        irradiance_record<S, T, Features> record;
-        T bend;
-    };
-
-    /// Holds nothing and answers nothing.
-    frozen_irradiance_cache() : frozen_irradiance_cache{std::vector<item>{}, irradiance_cache_options{}} {}
-
-    /// Near items lie side by side in memory, whatever their numbers. Expects usable records.
-    frozen_irradiance_cache(const std::vector<item>& items, const irradiance_cache_options& options)
-        : options_{options}, limits_{options.lookup, options.reach.metric} {
-        std::vector<stored_sphere<T>> spheres;
-        spheres.reserve(items.size());
-        for (const item& i : items) {
-            const auto number = static_cast<std::uint32_t>(spheres.size());
-            spheres.push_back({i.record.position(), limit2_of(i.record.longest_radius()), number});
-        }
-        reaches_ = packed_spheres<T>{std::move(spheres)};
-        items_.reserve(items.size());
-        places_.resize(items.size());
-        reaches_.renumber([&](std::uint32_t i) {
-            items_.push_back(items[i]);
-            return places_[i] = size() - 1;
-        });
+    length_between(T length, T shortest, T longest) {
+        const T share = longest > shortest ? std::log2(length / shortest) / std::log2(longest / shortest) : T(0);
+        code_ = static_cast<std::uint8_t>(std::ceil(std::clamp(share, T(0), T(1)) * T(255)));
     }
 
-    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
-    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal) const {
-        no_counters nothing;
-        return lookup(point, normal, nothing);
-    }
-    template <typename Counters>
-    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
-                                                 Counters& counters) const {
-        record_blend<S, T> blend{point, normal, limits_};
-        sphere_hits<T> near;
-        reaches_.search(covering_question<T>{point}, near);
-        const std::span<const std::uint32_t> numbers = near.items();
-        blend.add(
-            numbers.size(), [&](std::size_t i) -> const item& { return items_[numbers[i]]; },
-            [&](detail::verdict v) { detail::count(counters, v); });
-        const irradiance_answer<S, T> answer = blend.answer();
-        detail::count_lookup(counters, static_cast<bool>(answer));
-        return answer;
-    }
-
-    /// The same, and where the light comes from.
-    [[nodiscard]] light_answer<S, T> light(const vec3<T>& point, const vec3<T>& normal) const
-        requires(Features.incident) {
-        light_blend<S, T> blend{point, normal, limits_};
-        sphere_hits<T> near;
-        reaches_.search(covering_question<T>{point}, near);
-        for (const std::uint32_t number : near.items()) { blend.add(items_[number]); }
-        return blend.answer();
-    }
-
-    /// What the record says that fits best, however badly: for the odd point between all reaches. Asks every record, so
-    /// takes as long as a few gather rays. False only where no record faces the same half space.
-    [[nodiscard]] irradiance_answer<S, T> nearest(const vec3<T>& point, const vec3<T>& normal) const {
-        const item* best = nullptr;
-        T least = std::numeric_limits<T>::infinity();
-        for (const item& i : items_) {
-            const frame<T> axes = i.record.axes();
-            const T turn = length2(normal - axes.z) / 2;
-            const T misfit = i.record.distance2(i.record.local(point, axes)) + turn / limits_.turn;
-            if (turn < 1 && misfit < least) {
-                least = misfit;
-                best = &i;
-            }
-        }
-        if (!best) { return {}; }
-        const T error = static_cast<T>(max_component(best->record.irradiance())) * std::min(T(1), least * best->bend);
-        return {best->record.irradiance(), error, limits_.weight, 1};
-    }
-
-    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(items_.size()); }
-    /// The record of number `index`, which is where it was in the items. Expects `index < size()`.
-    [[nodiscard]] const record& operator[](std::uint32_t index) const { return items_[places_[index]].record; }
-    [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
-
-    /// Bytes taken from the heap.
-    [[nodiscard]] std::size_t bytes() const {
-        return items_.capacity() * sizeof(item) + places_.capacity() * sizeof(std::uint32_t) + reaches_.bytes();
+    [[nodiscard]] T of(T shortest, T longest) const {
+        if (code_ == 255) { return longest; }
+        return shortest * std::exp2(std::log2(longest / shortest) * (static_cast<T>(code_) / T(255)));
     }
 
 private:
-    std::vector<item> items_;
-    std::vector<std::uint32_t> places_;  // of the items, by number
-    irradiance_cache_options options_;
-    detail::lookup_limits<T> limits_;
-    packed_spheres<T> reaches_;
+    std::uint8_t code_;
 };
+
+}  // namespace detail
 
 /// An irradiance cache that grows. Lookups are safe from many threads while nobody inserts.
 template <Spectrum S, std::floating_point T = band_of<S>, record_features Features = record_features{}>
@@ -205,6 +80,8 @@ public:
         detail::check(options);
         detail::expect_setting(is_finite(scene_radius) && scene_radius > 0, "scene radius",
                                static_cast<double>(scene_radius));
+        shortest_ = static_cast<T>(options.reach.minimum_radius) * scene_radius;
+        longest_ = static_cast<T>(options.reach.maximum_radius) * scene_radius;
     }
     explicit irradiance_cache(const bounds<T>& scene, const irradiance_cache_options& options = {})
         : irradiance_cache{scene.radius(), options} {}
@@ -218,11 +95,18 @@ public:
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
                                                  Counters& counters) const {
         record_blend<S, T> blend{point, normal, limits_};
+        struct near_record {
+            const irradiance_record<S, T, Features>& record;
+            T bend;
+        };
         const item* near[few];
         std::size_t count = 0;
         const auto add_near = [&] {
             blend.add(
-                count, [&](std::size_t i) -> const item& { return *near[i]; },
+                count,
+                [&](std::size_t i) {
+                    return near_record{near[i]->record, own_bend(near[i]->record.radius())};
+                },
                 [&](detail::verdict v) { detail::count(counters, v); });
             count = 0;
         };
@@ -246,19 +130,18 @@ public:
     record_status insert(const estimate& e, T footprint = 0) {
         record_reach<T> r = reach(e, footprint);
         if (!is_usable(e, r)) { return refuse(record_status::bad_estimate); }
+        const detail::length_between<T> lowest{r.lowest, shortest_, longest_};
         const T own = r.own_radius;
-        if (options_.clamp_neighbours) { r.radius = std::max(r.lowest, clamped(e.position, own)); }
+        if (options_.clamp_neighbours) {
+            r.radius = std::max(lowest.of(shortest_, longest_), clamped(e.position, own));
+        }
         const record made{e, r};
-        const T bend = own_bend(r.radius);
-        if (!tree_.insert({made, bend, own, r.lowest, tree_.size()}, made.position(), made.longest_radius())) {
+        if (!tree_.insert({made, own}, made.position(), made.longest_radius())) {
             return refuse(record_status::bad_reach);
         }
+        lowest_.append(lowest);
         if (options_.clamp_neighbours) { clamp_others(e.position, own); }
-        // What has settled is found faster, and at half as many more at a time settling costs some three steps each.
-        if (size() >= settles_at_) {
-            tree_.settle([](const item& i) { return i.record.longest_radius(); });
-            settles_at_ = size() + size() / 2;
-        }
+        settle();
         return record_status::inserted;
     }
 
@@ -271,7 +154,7 @@ public:
     [[nodiscard]] std::size_t refused() const { return refused_; }
 
     /// Bytes taken from the heap.
-    [[nodiscard]] std::size_t bytes() const { return tree_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const { return tree_.bytes() + lowest_.bytes(); }
 
     /// The records in their present reach and in their order, ready to be asked only. Each learns from its neighbours
     /// how far off its extrapolation is, and, with `smoothing`, what they take its irradiance to be.
@@ -301,10 +184,7 @@ public:
 private:
     struct item {
         irradiance_record<S, T, Features> record;
-        T bend;
-        T own_radius;
-        T lowest;
-        std::uint32_t index;
+        T own_radius;  ///< without neighbours
     };
 
     template <Executor E, typename Body>
@@ -332,16 +212,20 @@ private:
 
     void clamp_others(const vec3<T>& position, T own) {
         std::vector<std::pair<std::uint32_t, T>> shrunk;
-        tree_.visit_covering(position, [&](const item& other) {
+        tree_.visit_covering(position, [&](const item& other, std::uint32_t index) {
             const T limit = own + glm::distance(other.record.position(), position);
-            const T radius = std::max(other.lowest, limit);
-            if (radius < other.record.radius()) { shrunk.emplace_back(other.index, radius); }
+            if (!(limit < other.record.radius())) { return; }
+            const T radius = std::max(lowest_[index].of(shortest_, longest_), limit);
+            if (radius < other.record.radius()) { shrunk.emplace_back(index, radius); }
         });
-        for (const auto& [index, radius] : shrunk) {
-            item& other = tree_[index];
-            other.record = other.record.with_radius(radius);
-            other.bend = own_bend(radius);
-        }
+        for (const auto& [index, radius] : shrunk) { tree_[index].record = tree_[index].record.with_radius(radius); }
+    }
+
+    // What has settled is found faster; a small part at a time leaves little that has not.
+    void settle() {
+        if (size() < settles_at_) { return; }
+        tree_.settle_latest([](const item& i) { return i.record.longest_radius(); });
+        settles_at_ = size() + std::max(size() / 16, 32u);
     }
 
     /// What the rule that set the reach takes the error at the border to be, relative to the irradiance.
@@ -354,9 +238,11 @@ private:
 
     irradiance_cache_options options_;
     T scene_radius_;
+    T shortest_{0}, longest_{0};  // reaches
     detail::lookup_limits<T> limits_;
     octree<item, T> tree_;
-    std::uint32_t settles_at_{64};
+    stable_array<detail::length_between<T>> lowest_{};  // what each reach never falls below
+    std::uint32_t settles_at_{32};
     std::size_t refused_{0};
 };
 

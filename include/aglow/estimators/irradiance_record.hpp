@@ -12,7 +12,7 @@
 #include <aglow/concepts/spectrum.hpp>
 #include <aglow/core/frame.hpp>
 #include <aglow/core/numbers.hpp>
-#include <aglow/core/octahedral.hpp>
+#include <aglow/core/stereographic.hpp>
 #include <aglow/core/vec.hpp>
 #include <aglow/estimators/compact_gradients.hpp>
 #include <aglow/estimators/irradiance_estimate.hpp>
@@ -40,24 +40,29 @@ struct left_out {};
 template <bool Kept, typename Part, int Number>
 using part_or_nothing = std::conditional_t<Kept, Part, left_out<Number>>;
 
-/// Half of 1 - (shorter/longer)² times (cos, sin) of twice the shorter axis' angle: an ellipse without its size.
+/// An ellipse without its size: the direction of its longer axis, as long as the root of 1 - (shorter/longer)².
 class compact_ellipse {
 public:
     compact_ellipse() = default;
+    /// `axis` is the shorter one, unit.
     template <typename T>
     compact_ellipse(T ratio, const vec2<T>& axis) {
-        const T depth = (1 - 1 / (ratio * ratio)) / 2;
-        codes_ = {code(depth * (axis.x * axis.x - axis.y * axis.y)), code(depth * (2 * axis.x * axis.y))};
+        const T flatness = std::sqrt(std::max(T(0), 1 - 1 / (ratio * ratio)));
+        codes_ = {code(-axis.y * flatness), code(axis.x * flatness)};
     }
     template <typename T>
     [[nodiscard]] vec2<T> value() const {
-        return {static_cast<T>(codes_[0]) * T(0x1p-16), static_cast<T>(codes_[1]) * T(0x1p-16)};
+        return value<T>(codes_[0], codes_[1]);
+    }
+    template <typename T>
+    [[nodiscard]] static vec2<T> value(int x, int y) {
+        return {static_cast<T>(x) * T(0x1p-15), static_cast<T>(y) * T(0x1p-15)};
     }
 
 private:
     template <typename T>
     static std::int16_t code(T x) {
-        return static_cast<std::int16_t>(std::lround(std::clamp(x * T(65536), T(-32767), T(32767))));
+        return static_cast<std::int16_t>(std::lround(std::clamp(x * T(32768), T(-32767), T(32767))));
     }
     std::array<std::int16_t, 2> codes_{};
 };
@@ -72,7 +77,12 @@ public:
           rays_{static_cast<std::uint16_t>(std::min(rays, 65535u))} {}
     template <typename T>
     [[nodiscard]] T noise() const {
-        return static_cast<T>(noise_) / static_cast<T>(std::max(1, 65534 - noise_));
+        return noise<T>(noise_);
+    }
+    template <typename T>
+    [[nodiscard]] static T noise(int code) {
+        const int rest = 65534 - code;
+        return static_cast<T>(code) / static_cast<T>(rest > 1 ? rest : 1);
     }
     [[nodiscard]] std::uint32_t rays() const { return rays_; }
 
@@ -88,11 +98,11 @@ template <std::floating_point T>
 struct record_shape {
     vec3<T> position;
     T radius;
-    vec2<T> normal;   ///< as `octahedral` folds it
-    vec2<T> ellipse;  ///< half of 1 - (shorter/longer)² times (cos, sin) of twice the shorter axis' angle
+    tilt<T> facing;   ///< the normal
+    vec2<T> stretch;  ///< direction of the longer axis, as long as the root of 1 - (shorter/longer)²
 
     /// What gradients and ellipse are given in.
-    [[nodiscard]] frame<T> axes() const { return frame<T>{octahedral::unfolded(normal)}; }
+    [[nodiscard]] frame<T> axes() const { return frame<T>{facing}; }
 
     /// Where a point of the world lies: in `axes`, from the position, in units of the radius.
     [[nodiscard]] vec3<T> local(const vec3<T>& point, const frame<T>& axes) const {
@@ -102,10 +112,8 @@ struct record_shape {
     /// Squared distance of a `local` point in units of the reach: below 1 inside the ellipsoid whose third semi-axis is
     /// the shorter one.
     [[nodiscard]] T distance2(const vec3<T>& p) const {
-        const T e2 = ellipse.x * ellipse.x + ellipse.y * ellipse.y;
-        const T round = 1 - e2 * inverse_root(e2);
-        const T flat =
-            round * (p.x * p.x + p.y * p.y) + ellipse.x * (p.x * p.x - p.y * p.y) + ellipse.y * (2 * p.x * p.y);
+        const T along = stretch.x * p.x + stretch.y * p.y;
+        const T flat = p.x * p.x + p.y * p.y - along * along;
         return (flat > 0 ? flat : T(0)) + p.z * p.z;
     }
 };
@@ -151,8 +159,8 @@ public:
     [[nodiscard]] T longest_radius() const {
         if constexpr (Features.ellipse) {
             const vec2<T> e = ellipse_.template value<T>();
-            const T depth = 2 * std::sqrt(e.x * e.x + e.y * e.y);
-            return radius_ / std::sqrt(std::max(T(0.01), 1 - depth)) * (1 + 8 * std::numeric_limits<T>::epsilon());
+            return radius_ / std::sqrt(std::max(T(0.01), 1 - (e.x * e.x + e.y * e.y))) *
+                   (1 + 8 * std::numeric_limits<T>::epsilon());
         } else {
             return radius_;
         }
@@ -172,8 +180,8 @@ public:
 
     /// Where it may speak.
     [[nodiscard]] record_shape<T> shape() const {
-        record_shape<T> s{position_, radius_, normal_.folded<T>(), {0, 0}};
-        if constexpr (Features.ellipse) { s.ellipse = ellipse_.template value<T>(); }
+        record_shape<T> s{position_, radius_, normal_.turned<T>(), {0, 0}};
+        if constexpr (Features.ellipse) { s.stretch = ellipse_.template value<T>(); }
         return s;
     }
     [[nodiscard]] frame<T> axes() const { return shape().axes(); }
@@ -209,10 +217,11 @@ public:
     }
 
 private:
+    // `detail::record_lanes` knows the order of these.
     vec3<T> position_{};
     S irradiance_{};
     T radius_{};
-    octahedral normal_{vec3<T>{0, 0, 1}};
+    stereographic normal_{};
     [[no_unique_address]] detail::part_or_nothing<Features.ellipse, detail::compact_ellipse, 0> ellipse_{};
     [[no_unique_address]] detail::part_or_nothing<Features.noise, detail::compact_noise, 1> noise_{};
     [[no_unique_address]] detail::part_or_nothing<Features.gradients, compact_gradients<S, T>, 2> gradients_{};

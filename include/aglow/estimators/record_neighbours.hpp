@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -60,8 +61,7 @@ template <typename Tree, Spectrum S, std::floating_point T, record_features F>
 /// The record with the irradiance that it and all records that reach it agree on: their first-order predictions weighed
 /// by one over the expected squared error, which is their common variance and the square of what each errs by. Their
 /// common one, since a record's own goes up and down with its irradiance, and would pull towards the dark. `tree`
-/// visits items with
-/// `.record` and `.index`, which is where in `bends` to look.
+/// visits items with `.record`, and tells their number, which is where in `bends` to look.
 template <typename Tree, Spectrum S, std::floating_point T, record_features F>
 [[nodiscard]] irradiance_record<S, T, F> smoothed(const Tree& tree, const irradiance_record<S, T, F>& r,
                                                   std::span<const T> bends, const lookup_limits<T>& limits) {
@@ -72,12 +72,12 @@ template <typename Tree, Spectrum S, std::floating_point T, record_features F>
     std::vector<prediction> predictions;
     double variance{};
     const vec3<T> normal = r.normal();
-    tree.visit_covering(r.position(), [&](const auto& item) {
+    tree.visit_covering(r.position(), [&](const auto& item, std::uint32_t index) {
         const irradiance_record<S, T, F>& other = item.record;
         const record_view<T> view = look(other, r.position(), normal, limits);
         if (view.judged != verdict::used) { return; }
         variance += variance_of(other);
-        const T bias = bends[item.index] * view.t2 * static_cast<T>(max_component(other.irradiance()));
+        const T bias = bends[index] * view.t2 * static_cast<T>(max_component(other.irradiance()));
         predictions.push_back({other.extrapolate(view.local, view.normal), square(static_cast<double>(bias))});
     });
     if (!(variance > 0)) { return r; }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <aglow/core/numbers.hpp>
@@ -27,16 +28,16 @@ struct weighed_records {
     T weight{0};
     T level{0};  ///< weighed, not yet divided
 
-    /// Asks all records but `except`. `tree` visits items with `.record` and `.index`.
+    /// Asks all records but `except`. `tree` visits items with `.record`, and tells their number.
     template <typename Tree>
     weighed_records(const Tree& tree, const vec3<T>& point, const vec3<T>& normal, const lookup_limits<T>& limits,
                     std::size_t except = ~std::size_t{0}) {
-        tree.visit_covering(point, [&](const auto& item) {
+        tree.visit_covering(point, [&](const auto& item, std::uint32_t index) {
             const record_view<T> view = look(item.record, point, normal, limits);
-            if (view.judged != verdict::used || item.index == except) { return; }
+            if (view.judged != verdict::used || index == except) { return; }
             const T w = record_weight(limits.metric, view.t2, view.turn / limits.turn);
             if (!(w > 0)) { return; }
-            shares.push_back({item.index, w});
+            shares.push_back({index, w});
             weight += w;
             level += w * static_cast<T>(max_component(item.record.extrapolate(view.local, view.normal)));
         });

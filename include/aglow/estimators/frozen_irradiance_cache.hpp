@@ -1,0 +1,170 @@
+// Irradiance records that stay, only to be asked.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <aglow/concepts/spectrum.hpp>
+#include <aglow/containers/packed_spheres.hpp>
+#include <aglow/containers/sphere_search.hpp>
+#include <aglow/core/frame.hpp>
+#include <aglow/core/simd.hpp>
+#include <aglow/core/vec.hpp>
+#include <aglow/estimators/irradiance_cache_options.hpp>
+#include <aglow/estimators/irradiance_record.hpp>
+#include <aglow/estimators/record_blend.hpp>
+#include <aglow/estimators/record_view.hpp>
+
+namespace aglow {
+
+/// A finished irradiance cache: only to be asked. Safe from many threads.
+template <Spectrum S, std::floating_point T = band_of<S>, record_features Features = record_features{}>
+class frozen_irradiance_cache {
+public:
+    using record = irradiance_record<S, T, Features>;
+    using spectrum = S;
+    using scalar = T;
+
+    /// A record, and its error at its own radius relative to its irradiance.
+    struct item {
+        irradiance_record<S, T, Features> record;
+        T bend;
+    };
+
+    /// Holds nothing and answers nothing.
+    frozen_irradiance_cache() : frozen_irradiance_cache{std::vector<item>{}, irradiance_cache_options{}} {}
+
+    /// Near items lie side by side in memory, whatever their numbers. Expects usable records.
+    frozen_irradiance_cache(const std::vector<item>& items, const irradiance_cache_options& options)
+        : options_{options}, limits_{options.lookup, options.reach.metric} {
+        std::vector<stored_sphere<T>> spheres;
+        spheres.reserve(items.size());
+        for (const item& i : items) {
+            const auto number = static_cast<std::uint32_t>(spheres.size());
+            spheres.push_back({i.record.position(), limit2_of(i.record.longest_radius()), number});
+        }
+        reaches_ = packed_spheres<T>{std::move(spheres)};
+        items_.reserve(items.size());
+        places_.resize(items.size());
+        reaches_.renumber([&](std::uint32_t i) {
+            items_.push_back(items[i]);
+            return places_[i] = size() - 1;
+        });
+    }
+
+    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
+    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal) const {
+        no_counters nothing;
+        return lookup(point, normal, nothing);
+    }
+    template <typename Counters>
+    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
+                                                 Counters& counters) const {
+        sphere_hits<T> near;
+        reaches_.search(covering_question<T>{point}, near);
+        return blend(point, normal, near.items(), counters);
+    }
+
+    /// Looks up every place, which has a `position` and a unit `normal`: `answers[i]` becomes what `lookup` says of
+    /// `places[i]`, to the bit. Asks for memory ahead, so that many places in any order are answered faster than one by
+    /// one. Expects as many answers as places.
+    template <typename Place>
+    void lookup_each(std::span<const Place> places, std::span<irradiance_answer<S, T>> answers) const {
+        for (std::size_t first = 0; first < places.size(); first += in_step) {
+            lookup_some(places.subspan(first, std::min(in_step, places.size() - first)), answers.subspan(first));
+        }
+    }
+
+    /// The same, and where the light comes from.
+    [[nodiscard]] light_answer<S, T> light(const vec3<T>& point, const vec3<T>& normal) const
+        requires(Features.incident) {
+        light_blend<S, T> blend{point, normal, limits_};
+        sphere_hits<T> near;
+        reaches_.search(covering_question<T>{point}, near);
+        for (const std::uint32_t number : near.items()) { blend.add(items_[number]); }
+        return blend.answer();
+    }
+
+    /// What the record says that fits best, however badly: for the odd point between all reaches. Asks every record, so
+    /// takes as long as a few gather rays. False only where no record faces the same half space.
+    [[nodiscard]] irradiance_answer<S, T> nearest(const vec3<T>& point, const vec3<T>& normal) const {
+        const item* best = nullptr;
+        T least = std::numeric_limits<T>::infinity();
+        for (const item& i : items_) {
+            const frame<T> axes = i.record.axes();
+            const T turn = length2(normal - axes.z) / 2;
+            const T misfit = i.record.distance2(i.record.local(point, axes)) + turn / limits_.turn;
+            if (turn < 1 && misfit < least) {
+                least = misfit;
+                best = &i;
+            }
+        }
+        if (!best) { return {}; }
+        const T error = static_cast<T>(max_component(best->record.irradiance())) * std::min(T(1), least * best->bend);
+        return {best->record.irradiance(), error, limits_.weight, 1};
+    }
+
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(items_.size()); }
+    /// The record of number `index`, which is where it was in the items. Expects `index < size()`.
+    [[nodiscard]] const record& operator[](std::uint32_t index) const { return items_[places_[index]].record; }
+    [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
+
+    /// Bytes taken from the heap.
+    [[nodiscard]] std::size_t bytes() const {
+        return items_.capacity() * sizeof(item) + places_.capacity() * sizeof(std::uint32_t) + reaches_.bytes();
+    }
+
+private:
+    static constexpr std::size_t in_step = 16;
+
+    template <typename Counters>
+    [[nodiscard]] irradiance_answer<S, T> blend(const vec3<T>& point, const vec3<T>& normal,
+                                                std::span<const std::uint32_t> numbers, Counters& counters) const {
+        record_blend<S, T> blend{point, normal, limits_};
+        blend.add(
+            numbers.size(), [&](std::size_t i) -> const item& { return items_[numbers[i]]; },
+            [&](detail::verdict v) { detail::count(counters, v); });
+        const irradiance_answer<S, T> answer = blend.answer();
+        detail::count_lookup(counters, static_cast<bool>(answer));
+        return answer;
+    }
+
+    // First all searches, then all blends, whose records are on their way by then.
+    template <typename Place>
+    void lookup_some(std::span<const Place> places, std::span<irradiance_answer<S, T>> answers) const {
+        constexpr std::size_t room = 32;
+        std::array<std::array<std::uint32_t, room>, in_step> found;
+        std::array<std::size_t, in_step> counts;
+        no_counters nothing;
+        reaches_.search_each(
+            places.size(), [&](std::size_t i) { return places[i].position; },
+            [&](std::size_t i, std::span<const std::uint32_t> numbers) {
+                counts[i] = numbers.size();
+                if (counts[i] > room) { answers[i] = blend(places[i].position, places[i].normal, numbers, nothing); }
+                for (std::size_t k = 0; k < std::min(room, counts[i]); ++k) {
+                    found[i][k] = numbers[k];
+                    simd::prefetch(&items_[numbers[k]]);
+                    simd::prefetch(&items_[numbers[k]].bend);
+                }
+            });
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            if (counts[i] > room) { continue; }
+            answers[i] = blend(places[i].position, places[i].normal, {found[i].data(), counts[i]}, nothing);
+        }
+    }
+
+    std::vector<item> items_;
+    std::vector<std::uint32_t> places_;  // of the items, by number
+    irradiance_cache_options options_;
+    detail::lookup_limits<T> limits_;
+    packed_spheres<T> reaches_;
+};
+
+}  // namespace aglow
