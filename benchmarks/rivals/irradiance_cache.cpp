@@ -1,11 +1,17 @@
-// rivals_irradiance_cache: whole lookups, from a place and its normal to blended irradiance. Records by our index and
-// by the textbooks' octree, blended by the same code; and irradiance points, nearest first, with the test of normals.
+// rivals_irradiance_cache: whole lookups, from a place and its normal to blended irradiance, by our caches and by the
+// textbooks' octree; and irradiance points, nearest first, with the test of normals.
 //
 //     rivals_irradiance_cache [--smoke] [--repeats N]
 //
 // Walls of a unit room; reaches within a factor of two, six over each place. CPU seconds of one thread, medians of
 // interleaved repeats. `random`: places anywhere; `coherent`: tiles of 128 neighbours. Before any time counts the
 // answers of both indices are compared.
+//
+//     textbook   a record is weighed and added as the octree visits it
+//     and ours   the textbooks' octree, and our blend of eight records at a time
+//     growing    a cache that may grow
+//     frozen     a cache that no longer does
+//     in step    the same, asked about 1,024 places at a time
 #include <time.h>
 
 #include <algorithm>
@@ -16,6 +22,7 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -103,6 +110,12 @@ public:
     }
     [[nodiscard]] answer lookup(const point& p, const point& normal) const {
         aglow::record_blend<rgb, float> blend{p, normal, limits_};
+        visit(p, [&](const item& i) { (void)blend.add(i.record, i.bend); });
+        return blend.answer();
+    }
+    /// The same by our blend.
+    [[nodiscard]] answer lookup_eight(const point& p, const point& normal) const {
+        aglow::record_blend<rgb, float> blend{p, normal, limits_};
         const item* near[64];
         std::size_t count = 0;
         const auto add_near = [&] {
@@ -110,8 +123,7 @@ public:
                 count, [&](std::size_t i) -> const item& { return *near[i]; }, [](aglow::detail::verdict) {});
             count = 0;
         };
-        tree_.visit(p, [&](const item& i) {
-            if (!(aglow::distance2(p, i.record.position()) < aglow::square(i.record.longest_radius()))) { return; }
+        visit(p, [&](const item& i) {
             near[count++] = &i;
             if (count == 64) { add_near(); }
         });
@@ -132,6 +144,14 @@ private:
         cache::record record;
         float bend;
     };
+
+    template <typename Visitor>
+    void visit(const point& p, const Visitor& visitor) const {
+        tree_.visit(p, [&](const item& i) {
+            if (aglow::distance2(p, i.record.position()) < aglow::square(i.record.longest_radius())) { visitor(i); }
+        });
+    }
+
     rivals::textbook_octree<item> tree_{aglow::bounds<float>{point{0}, point{1}}};
     aglow::detail::lookup_limits<float> limits_{options().lookup, options().reach.metric};
 };
@@ -147,27 +167,50 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/// Nanoseconds for one of `questions`.
-template <typename Ask>
-double time_of(const places& questions, const Ask& one) {
+/// Nanoseconds for one of `questions`, of which `task` adds up some number over each.
+template <typename Task>
+double time_of(const places& questions, const Task& task) {
     const double start = cpu_seconds();
-    float sum = 0;
-    for (const place& q : questions) { sum += one(q); }
+    const float sum = task(questions);
     const double seconds = cpu_seconds() - start;
     if (!(sum < 1e30f)) { throw std::runtime_error("an answer is no number"); }
     return seconds * 1e9 / static_cast<double>(questions.size());
+}
+
+/// Asks `one(place)` about each.
+template <typename One>
+auto each(One one) {
+    return [one](const places& questions) {
+        float sum = 0;
+        for (const place& q : questions) { sum += one(q); }
+        return sum;
+    };
+}
+
+float ask_in_step(const cache::frozen& from, const places& questions) {
+    float sum = 0;
+    std::vector<answer> answers(1024);
+    for (std::size_t i = 0; i < questions.size(); i += answers.size()) {
+        const auto some = std::span{questions}.subspan(i, std::min(answers.size(), questions.size() - i));
+        from.lookup_each(some, std::span{answers});
+        for (std::size_t k = 0; k < some.size(); ++k) { sum += answers[k].irradiance.x; }
+    }
+    return sum;
 }
 
 struct times {
     std::vector<double> random, coherent;
 };
 
-template <typename Cache>
-void ask(const Cache& from, const places& random, const places& coherent, times& t) {
-    const auto one = [&](const place& q) { return from.lookup(q.position, q.normal).irradiance.x; };
-    t.random.push_back(time_of(random, one));
-    t.coherent.push_back(time_of(coherent, one));
-}
+struct questions {
+    places random, coherent;
+
+    template <typename Task>
+    void ask(times& t, const Task& task) const {
+        t.random.push_back(time_of(random, task));
+        t.coherent.push_back(time_of(coherent, task));
+    }
+};
 
 void compare(std::size_t count, std::size_t asked, int repeats) {
     cache growing{scene_radius, options()};
@@ -180,34 +223,40 @@ void compare(std::size_t count, std::size_t asked, int repeats) {
     const double insertion = (cpu_seconds() - start) * 1e9 / static_cast<double>(count);
     const cache::frozen frozen = growing.freeze();
     const textbook book{frozen};
-    const places random = on_walls(asked, 2), coherent = tiles(count, asked);
+    const questions about{on_walls(asked, 2), tiles(count, asked)};
     for (std::size_t i = 0; i < std::min<std::size_t>(asked, 5000); ++i) {
-        const answer a = frozen.lookup(random[i].position, random[i].normal);
-        const answer b = book.lookup(random[i].position, random[i].normal);
+        const place& at = about.random[i];
+        const answer a = frozen.lookup(at.position, at.normal), b = book.lookup(at.position, at.normal);
         if (a.records != b.records || std::abs(a.weight - b.weight) > 1e-4f) {
             throw std::runtime_error("the two indices do not find the same records");
         }
     }
     aglow::lookup_counters counters;
-    for (const place& q : random) { (void)frozen.lookup(q.position, q.normal, counters); }
-    times each[3];
+    for (const place& q : about.random) { (void)frozen.lookup(q.position, q.normal, counters); }
+    const auto of = [](const auto& from) {
+        return [&from](const place& q) { return from.lookup(q.position, q.normal).irradiance.x; };
+    };
+    const auto eight = [&](const place& q) { return book.lookup_eight(q.position, q.normal).irradiance.x; };
+    times each_one[5];
     for (int turn = 0; turn < repeats; ++turn) {
-        ask(book, random, coherent, each[0]);
-        ask(growing, random, coherent, each[1]);
-        ask(frozen, random, coherent, each[2]);
+        about.ask(each_one[0], each(of(book)));
+        about.ask(each_one[1], each(eight));
+        about.ask(each_one[2], each(of(growing)));
+        about.ask(each_one[3], each(of(frozen)));
+        about.ask(each_one[4], [&](const places& some) { return ask_in_step(frozen, some); });
     }
     const auto n = static_cast<double>(count);
-    const char* names[] = {"textbook", "growing", "frozen"};
-    const double bytes[] = {static_cast<double>(book.bytes()) / n, static_cast<double>(growing.bytes()) / n,
-                            static_cast<double>(frozen.bytes()) / n};
-    for (int i = 0; i < 3; ++i) {
+    const char* names[] = {"textbook", "and ours", "growing", "frozen", "in step"};
+    const std::size_t bytes[] = {book.bytes(), book.bytes(), growing.bytes(), frozen.bytes(), frozen.bytes()};
+    const double random = median(each_one[0].random), coherent = median(each_one[0].coherent);
+    for (int i = 0; i < 5; ++i) {
+        const double one = median(each_one[i].random), near = median(each_one[i].coherent);
         std::printf("records %8zu  %-9s random %6.0f ns %5.2fx   coherent %6.0f ns %5.2fx   %6.1f bytes\n", count,
-                    names[i], median(each[i].random), median(each[0].random) / median(each[i].random),
-                    median(each[i].coherent), median(each[0].coherent) / median(each[i].coherent), bytes[i]);
+                    names[i], one, random / one, near, coherent / near, static_cast<double>(bytes[i]) / n);
     }
     std::printf("records %8zu  %.1f used of %.1f that the textbook checks; insertion %.0f ns, neighbours clamped\n",
-                count, static_cast<double>(counters.used) / static_cast<double>(counters.lookups), book.checked(random),
-                insertion);
+                count, static_cast<double>(counters.used) / static_cast<double>(counters.lookups),
+                book.checked(about.random), insertion);
     std::fflush(stdout);
 }
 
@@ -217,16 +266,17 @@ void read_points(std::size_t count, std::size_t asked, int repeats) {
         points.push_back({.position = p.position, .normal = p.normal, .irradiance = rgb{1}});
     }
     const aglow::irradiance_points<rgb, float> map{points};
-    const places random = on_walls(asked, 2), coherent = tiles(count, asked);
+    const questions about{on_walls(asked, 2), tiles(count, asked)};
     times lit, dark;
     const auto read = [&](const place& q, float side) {
         const auto found = map.nearest(q.position, q.normal * side);
         return found ? found->value.x : 0.0f;
     };
+    const auto in_front = [&](const place& q) { return read(q, 1); };
+    const auto behind = [&](const place& q) { return read(q, -1); };
     for (int turn = 0; turn < repeats; ++turn) {
-        lit.random.push_back(time_of(random, [&](const place& q) { return read(q, 1); }));
-        lit.coherent.push_back(time_of(coherent, [&](const place& q) { return read(q, 1); }));
-        dark.random.push_back(time_of(random, [&](const place& q) { return read(q, -1); }));
+        about.ask(lit, each(in_front));
+        dark.random.push_back(time_of(about.random, each(behind)));
     }
     std::printf(
         "points  %8zu  nearest   random %6.0f ns         coherent %6.0f ns         %6.1f bytes   none fits %6.0f ns\n",
