@@ -50,8 +50,8 @@ public:
         ask_lists(directory_.list_near(question.point), question, found);
     }
 
-    /// Calls `found(i, hits)` with the spheres that cover `point_at(i)`, for i below `count`, in order. Goes on with
-    /// many points in step and asks for memory ahead: of large indices, twice as fast as one by one and more.
+    /// Calls `found(i, items)` with the spheres that cover `point_at(i)`, for i below `count`, in order. Goes on with
+    /// several points in step and asks for memory ahead, which pays where the index does not fit into the caches.
     template <typename PointAt, typename Found>
     void search_each(std::size_t count, const PointAt& point_at, Found&& found) const {
         constexpr std::size_t some = 16;
