@@ -113,9 +113,10 @@ const bool asked = [] {
             over_sizes(ask(about("do_the_nearest_" + some + "_take"), nearest, k, coherent))
                 ->Complexity(benchmark::oLogN);
         }
-        over_sizes(ask(about("do_the_nearest_50_take_in_batches"), nearest_in_a_batch, std::size_t{50}, coherent));
+        over_sizes(ask(about("do_the_nearest_50_take_in_batches"), nearest_in_a_batch, std::size_t{50}, coherent))
+            ->Complexity(benchmark::oLogN);
         over_sizes(ask(about("does_the_nearest_one_take"), nearest_one, coherent))->Complexity(benchmark::oLogN);
-        over_sizes(ask(about("does_all_within_a_radius_take"), within, coherent));
+        over_sizes(ask(about("does_all_within_a_radius_take"), within, coherent))->Complexity(benchmark::oLogN);
     }
     over_sizes(
         ask("kd_tree/how_long_do_the_nearest_50_take_with_the_last_radius_as_hint", nearest_hinted, std::size_t{50}))
