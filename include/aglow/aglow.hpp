@@ -60,6 +60,7 @@
 #include <aglow/estimators/compact_gradients.hpp>
 #include <aglow/estimators/compact_photon.hpp>
 #include <aglow/estimators/density.hpp>
+#include <aglow/estimators/density_sum.hpp>
 #include <aglow/estimators/edge_derivatives.hpp>
 #include <aglow/estimators/estimate.hpp>
 #include <aglow/estimators/frozen_irradiance_cache.hpp>

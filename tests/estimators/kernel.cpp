@@ -31,6 +31,16 @@ TEST_CASE("kernel: every shape has unit mass over its disc") {
     }
 }
 
+TEST_CASE("kernel: chosen per photon or once, the weight is the same to the bit") {
+    for (const auto shape : {kernel_shape::constant, kernel_shape::cone, kernel_shape::epanechnikov,
+                             kernel_shape::biweight, kernel_shape::gaussian}) {
+        CAPTURE(static_cast<int>(shape));
+        for (const double rho2 : {0.0, 0.1, 0.5, 0.999}) {
+            CHECK(any_kernel{shape}(rho2) == with_kernel(shape, [&](auto kernel) { return kernel(rho2); }));
+        }
+    }
+}
+
 TEST_CASE("kernel: second moments and roughness are those of the books") {
     const auto axis_moment = [](kernel_shape shape) { return over_disc(shape, 1, 2) / 2; };
     CHECK(axis_moment(kernel_shape::constant) == Approx(1.0 / 4).epsilon(1e-12));

@@ -67,4 +67,14 @@ decltype(auto) with_kernel(kernel_shape shape, Use&& use) {
     return use(epanechnikov_kernel{});
 }
 
+/// The kernel of a shape that is chosen per photon.
+struct any_kernel {
+    kernel_shape shape;
+
+    template <typename T>
+    [[nodiscard]] T operator()(T rho2) const {
+        return with_kernel(shape, [&](const auto& kernel) { return kernel(rho2); });
+    }
+};
+
 }  // namespace aglow

@@ -18,6 +18,7 @@
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/ray.hpp>
 #include <aglow/estimators/density.hpp>
+#include <aglow/estimators/density_sum.hpp>
 #include <aglow/estimators/photon.hpp>
 
 namespace aglow {
@@ -206,15 +207,12 @@ private:
     [[nodiscard]] density_estimate<S, T> sum(const vec3<T>& point, const density_options& options, Accept&& accept,
                                              Weigh&& weigh) const {
         if (empty()) { return {}; }
-        return with_kernel(options.kernel, [&](auto kernel) {
-            return options.count == 0 ? within(point, options, kernel, accept, weigh)
-                                      : nearest(point, options, kernel, accept, weigh);
-        });
+        return options.count == 0 ? within(point, options, accept, weigh) : nearest(point, options, accept, weigh);
     }
 
-    template <typename Kernel, typename Accept, typename Weigh>
-    [[nodiscard]] density_estimate<S, T> nearest(const vec3<T>& point, const density_options& options,
-                                                 const Kernel& kernel, Accept& accept, Weigh& weigh) const {
+    template <typename Accept, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> nearest(const vec3<T>& point, const density_options& options, Accept& accept,
+                                                 Weigh& weigh) const {
         // Scratch only: what it holds never shows in a result.
         static thread_local kd_scratch<T> scratch;
         const std::uint32_t count = std::max(2u, options.count);
@@ -222,105 +220,34 @@ private:
         const auto found = tree_.nearest(point, count, scratch, {.radius2 = square(reach)}, accept);
         const T radius2 = found.radius2 * square(static_cast<T>(options.shrink));
         const T least2 = square(least_radius(reach));
-        if (radius2 < least2) { return over(point, least2, kernel, accept, weigh); }
-        density_sum<Kernel> sum{kernel, radius2, unit_};
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            const kd_slot slot = found.slots[i];
-            sum.add(found.distances2[i], tree_.position(slot) - point, photons_[slot], weigh);
-        }
-        return sum.result();
+        if (radius2 < least2) { return over(point, least2, options.kernel, accept, weigh); }
+        return with_kernel(options.kernel, [&](auto kernel) {
+            detail::density_sum<S, T, decltype(kernel)> sum{kernel, radius2, unit_};
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                const kd_slot slot = found.slots[i];
+                sum.add(found.distances2[i], tree_.position(slot) - point, photons_[slot], weigh);
+            }
+            return sum.result();
+        });
     }
 
-    template <typename Kernel, typename Accept, typename Weigh>
-    [[nodiscard]] density_estimate<S, T> within(const vec3<T>& point, const density_options& options,
-                                                const Kernel& kernel, Accept& accept, Weigh& weigh) const {
+    template <typename Accept, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> within(const vec3<T>& point, const density_options& options, Accept& accept,
+                                                Weigh& weigh) const {
         const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(50);
-        return over(point, square(std::max(reach, least_radius(reach))), kernel, accept, weigh);
+        return over(point, square(std::max(reach, least_radius(reach))), options.kernel, accept, weigh);
     }
 
-    /// All photons within one radius.
-    template <typename Kernel, typename Accept, typename Weigh>
-    [[nodiscard]] density_estimate<S, T> over(const vec3<T>& point, T radius2, const Kernel& kernel, Accept& accept,
+    /// All photons within one radius. Seldom asked, hence with any kernel: a search compiled for each is long.
+    template <typename Accept, typename Weigh>
+    [[nodiscard]] density_estimate<S, T> over(const vec3<T>& point, T radius2, kernel_shape shape, Accept& accept,
                                               Weigh& weigh) const {
-        density_sum<Kernel> sum{kernel, radius2, unit_};
+        detail::density_sum<S, T, any_kernel> sum{{shape}, radius2, unit_};
         tree_.within(point, sum.radius2, [&](kd_slot i, T distance2) {
             if (accept(i)) { sum.add(distance2, tree_.position(i) - point, photons_[i], weigh); }
         });
         return sum.result();
     }
-
-    /// Adds photons up, once over the whole disc and once over half its radius.
-    template <typename Kernel>
-    struct density_sum {
-        using B = band_of<S>;
-        using wide_sum = typename long_sum<S>::type;
-        const Kernel& kernel;
-        T radius2;
-        B unit;
-        S wide{};
-        S narrow{};
-        wide_sum wide_before{};  ///< sums of earlier sets of 16: one long sum of floats stands still
-        wide_sum narrow_before{};
-        double noise2{0};  ///< squares of faint light leave the range of floats
-        double mass{0};
-        vec3<double> moment{};  ///< of `mass` around the point
-        std::uint32_t count{0};
-
-        template <typename Weigh>
-        void add(T distance2, const vec3<T>& away, const Item& p, Weigh& weigh) {
-            // The k-th lies on the rim and does not count: that is the unbiased rule. Asked of the squares themselves,
-            // since -ffast-math may divide by multiplying.
-            if (!(distance2 < radius2)) { return; }
-            const T rho2 = distance2 / radius2;
-            const S flux = weigh(p);
-            const S share = flux * B(kernel(rho2));
-            wide = wide + share;
-            noise2 += square(static_cast<double>(max_component(share)));
-            const double weight = static_cast<double>(max_component(flux));
-            mass += weight;
-            moment += vec3<double>(away) * weight;
-            if (rho2 < T(0.25)) { narrow = narrow + flux * B(4 * kernel(4 * rho2)); }
-            if (++count % 16 == 0) { close_set(); }
-        }
-
-        void close_set() {
-            wide_before = wide_before + static_cast<wide_sum>(wide);
-            narrow_before = narrow_before + static_cast<wide_sum>(narrow);
-            wide = S{};
-            narrow = S{};
-        }
-
-        /// What an uneven density may hide from two radii, as a share of the value. They see nothing of a border
-        /// through the middle of the disc, and cross each other elsewhere; but it pulls the photons' mean off the
-        /// centre: by `lean` quarters of the radius, 1 where light falls to nothing at the rim, 1.7 where half of the
-        /// disc is dark, and then as much is missing as is there: 0.35 lean² (0.35 1.7² = 1).
-        [[nodiscard]] double hidden() const {
-            if (!(mass > 0)) { return 0; }
-            const double lean2 = 16 * length2(moment / (mass * std::sqrt(static_cast<double>(radius2))));
-            // Chance alone leans the photons of even light by 8 / count in the mean.
-            return 0.35 * std::max(0.0, lean2 - 8.0 / count);
-        }
-
-        [[nodiscard]] density_estimate<S, T> result() {
-            if (!(radius2 > 0)) { return {}; }
-            close_set();
-            const B scale = B(1 / radius2) * unit;
-            // Bias goes as radius², so the wider estimate is off by 1 / (1 - 1/4) of what lies between both.
-            const S value = static_cast<S>(wide_before);
-            const S apart = static_cast<S>(wide_before + narrow_before * band_of<wide_sum>(-1)) * (B(4) / 3);
-            const B above = max_component(apart);
-            const B below = max_component(S(apart * B(-1)));
-            const B noise = B(std::sqrt(noise2));
-            const B border = B(hidden() * static_cast<double>(max_component(value)));
-            // Across edges, where most of a picture's bias is, it goes as the radius: half of it lies between both.
-            const B shared = B(1.5) * (above < below ? -below : above);
-            return {{.value = value * scale,
-                     .error = (std::max(above, below) + 2 * noise + border) * scale,
-                     .bias = shared * scale},
-                    count,
-                    std::sqrt(radius2)};
-        }
-    };
 
     kd_tree<T> tree_{};
     std::vector<Item> photons_{};
