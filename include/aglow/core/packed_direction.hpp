@@ -23,6 +23,16 @@ public:
         return vec3<T>{static_cast<T>(x_), static_cast<T>(y_), static_cast<T>(z_)} * (1 / T(largest));
     }
 
+    /// The direction times `length()`: for those who ask for a sign.
+    template <typename T>
+    [[nodiscard]] vec3<T> along() const {
+        return {static_cast<T>(x_), static_cast<T>(y_), static_cast<T>(z_)};
+    }
+    template <typename T>
+    [[nodiscard]] static constexpr T length() {
+        return T(largest);
+    }
+
     friend bool operator==(const packed_direction&, const packed_direction&) = default;
 
 private:

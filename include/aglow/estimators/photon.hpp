@@ -20,12 +20,12 @@ struct photon {
     /// Whether it arrived on the side of a surface that `n` (unit) points out of.
     template <typename T>
     [[nodiscard]] bool arrived_on(const vec3<T>& n) const {
-        return glm::dot(wi.template direction<T>(), n) > 0;
+        return glm::dot(wi.template along<T>(), n) > 0;
     }
     /// Whether its surface's normal is within `cosine` of unit `n`.
     template <typename T>
     [[nodiscard]] bool faces(const vec3<T>& n, T cosine) const {
-        return glm::dot(normal.template direction<T>(), n) >= cosine;
+        return glm::dot(normal.template along<T>(), n) >= cosine * normal.template length<T>();
     }
 
     // What a `PhotonItem` answers.
