@@ -293,9 +293,10 @@ template <typename T>
 template <typename Runner, typename T>
 [[nodiscard]] T larger_radius2(const kd_storage<T>& tree, kd_probe<T>& probe, std::uint32_t k, std::uint32_t had,
                                int attempt, T radius2, T limit) {
-    if (attempt == 0 && had * 4 >= k && had > 0) {
+    // Where the caller refuses many, what it took says more than the tree; four times more at once, lest it was chance.
+    if (attempt < 4 && had * 16 >= k && had > 0) {
         const T wanted = static_cast<T>(k) + 2 * std::sqrt(static_cast<T>(k)) + 1;
-        return radius2 * (T(1.25) * wanted / static_cast<T>(had));
+        return radius2 * std::min(T(4), T(1.25) * wanted / static_cast<T>(had));
     }
     if (!probe.at_home) { Runner::template run<go_home_kernel>(tree, probe); }
     return std::max(covering_radius2(tree, probe, k, attempt, limit), radius2);
