@@ -62,6 +62,9 @@ TEST_CASE("sobol: bits are reversed") {
     CHECK(aglow::reverse_bits(1u) == 0x80000000u);
     CHECK(aglow::reverse_bits(0x12345678u) == 0x1e6a2c48u);
     CHECK(aglow::reverse_bits(aglow::reverse_bits(0xdeadbeefu)) == 0xdeadbeefu);
+    CHECK(aglow::reverse_bits(std::uint64_t{1}) == 0x8000000000000000u);
+    CHECK(aglow::reverse_bits(std::uint64_t{0x12345678deadbeef}) ==
+          (std::uint64_t{aglow::reverse_bits(0xdeadbeefu)} << 32 | 0x1e6a2c48u));
 }
 
 TEST_CASE("sobol: scrambling is a bijection whose digits depend on higher ones alone") {

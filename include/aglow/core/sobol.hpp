@@ -8,6 +8,14 @@
 
 namespace aglow {
 
+[[nodiscard]] constexpr std::uint64_t reverse_bits(std::uint64_t x) {
+    x = ((x >> 1) & 0x5555555555555555u) | ((x & 0x5555555555555555u) << 1);
+    x = ((x >> 2) & 0x3333333333333333u) | ((x & 0x3333333333333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0f0f0f0f0fu) | ((x & 0x0f0f0f0f0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ff00ff00ffu) | ((x & 0x00ff00ff00ff00ffu) << 8);
+    x = ((x >> 16) & 0x0000ffff0000ffffu) | ((x & 0x0000ffff0000ffffu) << 16);
+    return (x >> 32) | (x << 32);
+}
 [[nodiscard]] constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -51,9 +59,10 @@ template <std::floating_point T>
     const auto high = static_cast<std::uint32_t>(seed >> 32);
     // Shuffle the order too, so that points of different seeds pair up at random (Burley 2020, section 3).
     const std::uint32_t shuffled = owen_scramble(index, low ^ high);
-    const std::uint32_t x = reverse_bits(owen_hash(shuffled, low));
-    const std::uint32_t y = reverse_bits(owen_hash(sobol_1_reversed(shuffled), high));
-    return {unit_interval<T>(std::uint64_t{x} << 32), unit_interval<T>(std::uint64_t{y} << 32)};
+    // Both turned round in one word.
+    const std::uint64_t x = owen_hash(shuffled, low);
+    const std::uint64_t y_x = reverse_bits(x << 32 | owen_hash(sobol_1_reversed(shuffled), high));
+    return {unit_interval<T>(y_x << 32), unit_interval<T>(y_x & 0xffffffff00000000u)};
 }
 
 /// Stratified numbers of sample `index`; each pair of draws is a fresh scrambling keyed by `start`.
