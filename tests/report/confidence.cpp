@@ -42,6 +42,12 @@ TEST_CASE("quantile: linear between neighbours, the ends at 0 and 1, nothing of 
     CHECK(median({}) == 0);
 }
 
+TEST_CASE("rising order: each place once, by value, equal ones as they came") {
+    const std::vector<double> values{3, 1, 2, 1, -5, 3};
+    CHECK(rising_order(values) == std::vector<std::size_t>{4, 1, 3, 2, 0, 5});
+    CHECK(rising_order({}).empty());
+}
+
 TEST_CASE("quantile bound: 58 values cannot bound the 95 % quantile at 95 %, and 59 can by their largest") {
     std::vector<double> values;
     for (int i = 1; i <= 58; ++i) { values.push_back(i); }
