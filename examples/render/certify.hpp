@@ -18,24 +18,29 @@ class audited_film {
 public:
     /// `feature` tells of each pixel whether another primitive is near; together with how large the guess is beside the
     /// light, and with the darkest tenth, it makes the classes that error bars hold in.
-    audited_film(const aglow::film<vec3<float>>& film, const std::vector<char>& feature)
-        : width_{film.width()}, height_{film.height()} {
+    audited_film(const aglow::film<vec3<float>>& film, const std::vector<char>& feature) : audited_film{film} {
         std::vector<double> hardness;
         std::vector<double> light;
-        for (std::size_t y = 0; y < height_; ++y) {
-            for (std::size_t x = 0; x < width_; ++x) {
-                const vec3<float> p = film.radiance(x, y);
-                values_.insert(values_.end(), {p.x, p.y, p.z});
-                guess_.push_back(film.error(x, y));
-                light.push_back(static_cast<double>(p.x + p.y + p.z));
-                hardness.push_back(static_cast<double>(guess_.back()) / std::max(1e-30, light.back()));
-            }
+        for (std::size_t i = 0; i < guess_.size(); ++i) {
+            light.push_back(static_cast<double>(values_[3 * i] + values_[3 * i + 1] + values_[3 * i + 2]));
+            hardness.push_back(static_cast<double>(guess_[i]) / std::max(1e-30, light.back()));
         }
         const double hard = quantile(hardness, 0.75);
         const double dark = quantile(light, 0.1);
         for (std::size_t i = 0; i < light.size(); ++i) {
             const std::uint32_t kind = (hardness[i] > hard ? 2u : 0u) + (feature[i] ? 1u : 0u);
             classes_.push_back(light[i] <= dark ? 4u : kind);
+        }
+    }
+
+    /// Without classes: for claims on the whole picture.
+    explicit audited_film(const aglow::film<vec3<float>>& film) : width_{film.width()}, height_{film.height()} {
+        for (std::size_t y = 0; y < height_; ++y) {
+            for (std::size_t x = 0; x < width_; ++x) {
+                const vec3<float> p = film.radiance(x, y);
+                values_.insert(values_.end(), {p.x, p.y, p.z});
+                guess_.push_back(film.error(x, y));
+            }
         }
     }
 

@@ -121,7 +121,10 @@ void add_questions(CLI::App& app, render_options& o, std::string& show, std::str
     app.add_flag("--layers", o.layers, "also direct, indirect and caustic light, as layers of the EXR")->group(group);
     app.add_flag("--error", o.error, "audit the picture: error bars as a layer, and as a heat map beside it")
         ->group(group);
-    app.add_option("--until", until, "render on until an audit certifies this mean relative error, such as 5%")
+    app.add_option(
+           "--until", until,
+           "render on until an audit certifies this mean relative error, such as 5%; photons, gather rays and accuracy "
+           "follow it where they are not given")
         ->type_name("ERROR")
         ->group(group);
     app.add_flag("--reference", o.reference,

@@ -118,6 +118,7 @@
 #include <aglow/report/audit_sample.hpp>
 #include <aglow/report/bias_variance.hpp>
 #include <aglow/report/bootstrap.hpp>
+#include <aglow/report/claim_plan.hpp>
 #include <aglow/report/confidence.hpp>
 #include <aglow/report/conformal.hpp>
 #include <aglow/report/convergence.hpp>

@@ -84,6 +84,7 @@ void state(audit_result& result, const audit_sample<T>& sample, const audit_opti
     const running_mean all = mean_of(errors);
     result.mean_error = all.mean();
     result.mean_error_deviation = all.deviation();
+    result.likely_error = sample.likely().error;
     const bool bounded = !sample.heavy_tailed();
     result.unmet_error = bounded ? sample.unmet_error(options.confidence) : 0;
     result.mean_error_bound = skewed_upper_bound(errors, options.confidence) + result.unmet_error;
@@ -102,6 +103,24 @@ void state(audit_result& result, const audit_sample<T>& sample, const audit_opti
     for (const double e : errors) { result.largest_share = std::max(result.largest_share, std::abs(e) / sum); }
 }
 
+/// An audit of a picture without broken pixels.
+template <std::floating_point T, Probe P, Executor E>
+[[nodiscard]] audit_result audit_on(const audit_ground<T>& ground, const P& probe, const audit_options& options,
+                                    const E& run) {
+    audit_sample<T> sample{ground, options};
+    sample.draw(probe, run);
+    audit_result result{.target = options.target, .confidence = options.confidence, .quantile = options.quantile};
+    result.unseen = options.unseen;
+    result.dark_floor = sample.dark_floor();
+    result.probes = sample.probes();
+    result.samples_per_probe = sample.samples_per_probe();
+    result.samples = sample.samples();
+    result.broken_samples = sample.broken();
+    state(result, sample, options);
+    judge(result, options, sample.heavy_tailed());
+    return result;
+}
+
 }  // namespace detail
 
 /// Statements about the error of `picture`, each at `options.confidence` by itself. `probe` estimates a pixel without
@@ -113,18 +132,7 @@ template <std::floating_point T, Probe P, Executor E = in_sequence>
                                  const E& run = {}) {
     require_auditable(picture, options);
     if (count_broken_pixels(picture.image) > 0) { return detail::refuse_broken(picture, options); }
-    detail::audit_sample<T> sample{picture, options};
-    sample.draw(probe, run);
-    audit_result result{.target = options.target, .confidence = options.confidence, .quantile = options.quantile};
-    result.unseen = options.unseen;
-    result.dark_floor = sample.dark_floor();
-    result.probes = sample.probes();
-    result.samples_per_probe = sample.samples_per_probe();
-    result.samples = sample.samples();
-    result.broken_samples = sample.broken();
-    detail::state(result, sample, options);
-    detail::judge(result, options, sample.heavy_tailed());
-    return result;
+    return detail::audit_on(detail::audit_ground<T>{picture, options}, probe, options, run);
 }
 
 /// Audits a plain picture, without guesses and classes.

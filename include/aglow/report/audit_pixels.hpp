@@ -143,6 +143,21 @@ private:
     std::vector<double> sums_{};
 };
 
+/// What an audit knows of a picture before it looks; made once for all looks at it. Expects a whole picture.
+template <std::floating_point T>
+struct audit_ground {
+    audited_picture<T> picture;
+    double mean;   ///< value of the picture
+    double floor;  ///< of what errors are relative to
+    pixel_shares shares;
+
+    audit_ground(const audited_picture<T>& seen, const audit_options& options)
+        : picture{seen},
+          mean{mean_value(seen.image)},
+          floor{options.dark * std::abs(mean)},
+          shares{seen, floor, options.target} {}
+};
+
 }  // namespace detail
 
 }  // namespace aglow

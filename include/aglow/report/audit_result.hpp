@@ -87,6 +87,7 @@ struct audit_result {
 
     interval energy_bias{};          ///< Σ(B−I)/ΣI, of the mean of the channels
     double mean_error{0};            ///< estimate of the mean relative error, slightly above on average
+    double likely_error{0};          ///< the same for plans: as often below as above, and no bound is made of it
     double mean_error_deviation{0};  ///< standard deviation of one probe's contribution to it
     double mean_error_bound{0};      ///< upper bound on it
     double mean_error_floor{0};      ///< lower bound on it

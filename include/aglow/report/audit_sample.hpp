@@ -13,6 +13,7 @@
 #include <aglow/core/random.hpp>
 #include <aglow/report/audit_pixels.hpp>
 #include <aglow/report/audit_result.hpp>
+#include <aglow/report/confidence.hpp>
 #include <aglow/report/conformal.hpp>
 #include <aglow/report/probe.hpp>
 #include <aglow/report/running_mean.hpp>
@@ -25,16 +26,34 @@ namespace aglow::detail {
     return all;
 }
 
+/// What an error probably is, and the standard error of that.
+struct likely_error {
+    double error{0};
+    double deviation{0};
+};
+
+/// √(2F² − G²), F and G the means of `all` and `halves`: E|e+n|² is about e² + c·Var n, and that of halves twice as far
+/// off. Where noise is nearly all that was seen, a third of it is left, and little is sure.
+[[nodiscard]] inline likely_error without_noise(std::span<const double> all, std::span<const double> halves) {
+    const double f = mean_of(all).mean();
+    const double g = mean_of(halves).mean();
+    const double error = std::sqrt(std::max(2 * f * f - g * g, f * f / 9));
+    running_mean influence;
+    for (std::size_t i = 0; i < all.size(); ++i) { influence.add((2 * f * all[i] - g * halves[i]) / error); }
+    return {error, influence.standard_error()};
+}
+
 /// Draws the probes of an audit and turns them into one number each, per statement. Expects options that were checked.
 template <std::floating_point T>
 class audit_sample {
 public:
-    audit_sample(const audited_picture<T>& picture, const audit_options& options)
-        : picture_{picture},
+    /// Keeps a reference to `ground`.
+    audit_sample(const audit_ground<T>& ground, const audit_options& options)
+        : picture_{ground.picture},
           options_{options},
-          mean_{mean_value(picture.image)},
-          floor_{options.dark * std::abs(mean_)},
-          shares_{picture, floor_, options.target} {}
+          mean_{ground.mean},
+          floor_{ground.floor},
+          shares_{ground.shares} {}
 
     /// A pilot tells how many samples a probe needs; then the probes, all of them anew with more samples while their
     /// noise seems heavy-tailed, and more for classes that got too few.
@@ -42,13 +61,17 @@ public:
     void draw(const P& probe, const E& run) {
         per_batch_ = pilot(probe, run);
         uniform_ = static_cast<std::size_t>(shares_.uniform_part() * static_cast<double>(options_.probes));
-        records_ = draw_all(probe, run, main_pixels(), per_batch_, part_main);
+        const std::vector<std::size_t> pixels = main_pixels();
+        std::vector<std::size_t> batches = allotted(probe, run, pixels, part_main_spread);
+        records_ = draw_all(probe, run, pixels, batches, part_main);
         for (std::uint64_t again = 1; worth_drawing_anew(); ++again) {
             per_batch_ *= 4;
-            records_ = draw_all(probe, run, main_pixels(), per_batch_, part_anew + again);
+            for (std::size_t& b : batches) { b *= 4; }
+            records_ = draw_all(probe, run, pixels, batches, part_anew + again);
         }
         slow_ = seems_heavy();
-        extra_ = draw_all(probe, run, pixels_of_rare_classes(), per_batch_, part_extra);
+        const std::vector<std::size_t> rare = pixels_of_rare_classes();
+        extra_ = draw_all(probe, run, rare, allotted(probe, run, rare, part_extra_spread), part_extra);
     }
 
     [[nodiscard]] double mean() const { return mean_; }
@@ -80,6 +103,18 @@ public:
             const double gap = less_noisy([&](unsigned chosen) { return error(r, chosen); });
             return shares_.weight(r.pixel) * (gap + denominator_noise2(r));
         });
+    }
+
+    /// The mean relative error as it probably is, for plans: the square of what is seen grows about as the variance of
+    /// the probes' noise, which is twice as large for halves of the batches. As often below the truth as above it.
+    [[nodiscard]] likely_error likely() const {
+        const auto seen = [&](const auto& of) { return each(records_.size(), of); };
+        const std::vector<double> all =
+            seen([&](const probe_record& r) { return shares_.weight(r.pixel) * error(r, every_batch); });
+        const std::vector<double> halves = seen([&](const probe_record& r) {
+            return shares_.weight(r.pixel) * mean_over_choices<4>([&](unsigned half) { return error(r, half); });
+        });
+        return without_noise(all, halves);
     }
 
     /// Weighted size of the noise of each probe, relative as its error is: half the distance of its halves.
@@ -143,6 +178,8 @@ private:
     static constexpr std::size_t pilot_probes = 32;
     static constexpr std::uint64_t part_main = 0;  // parts of the audit's random numbers; pilots are 2, 3, ...
     static constexpr std::uint64_t part_extra = 1;
+    static constexpr std::uint64_t part_main_spread = 500;
+    static constexpr std::uint64_t part_extra_spread = 501;
     static constexpr std::uint64_t part_anew = 1000;
     static constexpr double heavy = 0.6;  // tail index that a finite variance seldom shows
     static constexpr unsigned every_batch = (1u << probe_batches) - 1;
@@ -181,7 +218,7 @@ private:
         const double size = options_.sample_bound.value_or(std::numeric_limits<double>::infinity());
         double largest = 0;
         for (const probe_record& r : records_) {
-            const double jump = size / static_cast<double>(samples_per_probe()) / below(r);
+            const double jump = size / static_cast<double>(r.samples) / below(r);
             largest = std::max(largest, shares_.weight(r.pixel) * jump);
         }
         return largest / static_cast<double>(records_.size());
@@ -282,13 +319,14 @@ private:
         return pixels;
     }
 
+    /// Draws the probe of each pixel with its own number of samples in a batch, or with that of all.
     template <Probe P, Executor E>
     [[nodiscard]] std::vector<probe_record> draw_all(const P& probe, const E& run,
-                                                     const std::vector<std::size_t>& pixels, std::size_t per_batch,
-                                                     std::uint64_t part) {
+                                                     const std::vector<std::size_t>& pixels,
+                                                     const std::vector<std::size_t>& batches, std::uint64_t part) {
         std::vector<probe_record> records(pixels.size());
         run(pixels.size(), [&](std::size_t i) {
-            records[i] = draw_probe(probe, pixels[i], picture_.image.channels, per_batch, key(part, i));
+            records[i] = draw_probe(probe, pixels[i], picture_.image.channels, batches[i], key(part, i));
         });
         for (const probe_record& r : records) {
             samples_ += r.samples;
@@ -297,14 +335,42 @@ private:
         return records;
     }
 
+    /// Samples per batch of each probe, `per_batch_` on average: most where the noise is largest beside the light, as
+    /// Neyman (1934) shares a sample among strata. A look of its own tells, so that the probes stay unbiased.
+    template <Probe P, Executor E>
+    [[nodiscard]] std::vector<std::size_t> allotted(const P& probe, const E& run,
+                                                    const std::vector<std::size_t>& pixels, std::uint64_t part) {
+        std::vector<std::size_t> batches(pixels.size(), per_batch_);
+        if (per_batch_ < 8) { return batches; }
+        const std::vector<std::size_t> few(pixels.size(), per_batch_ / 8);
+        std::vector<double> spreads;
+        for (const probe_record& r : draw_all(probe, run, pixels, few, part)) { spreads.push_back(spread_of(r)); }
+        const double mean = mean_of(spreads).mean();
+        if (!(mean > 0)) { return batches; }
+        for (std::size_t i = 0; i < batches.size(); ++i) {
+            // What few samples say is not believed to the last: a quarter is dealt out evenly.
+            const double share = 0.25 + 0.75 * std::min(spreads[i] / mean, 16.0);
+            batches[i] = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(per_batch_)));
+        }
+        return batches;
+    }
+
+    /// Relative standard deviation of one batch, averaged over channels.
+    [[nodiscard]] double spread_of(const probe_record& r) const {
+        double sum = 0;
+        for (std::size_t c = 0; c < r.channels; ++c) { sum += std::sqrt(r.batch_variance(c)) / below(r, c); }
+        return sum / static_cast<double>(r.channels);
+    }
+
     /// Samples per batch for the wanted noise. A few single samples say little of a skewed noise, so the pilot is
     /// repeated with larger batches until these are within a factor 8 of what they call for.
     template <Probe P, Executor E>
     [[nodiscard]] std::size_t pilot(const P& probe, const E& run) {
         std::size_t batch = 1;
         for (std::uint64_t round = 2;; ++round) {
+            const std::vector<std::size_t> batches(pilot_probes, batch);
             const double wanted =
-                wanted_batch(draw_all(probe, run, uniform_pixels(pilot_probes, round), batch, round), batch);
+                wanted_batch(draw_all(probe, run, uniform_pixels(pilot_probes, round), batches, round), batch);
             const double most = affordable_batch();
             const double next = std::clamp(std::ceil(std::min(wanted, most)), 1.0, 1e9);
             if (wanted <= 8 * static_cast<double>(batch) || next < wanted) { return static_cast<std::size_t>(next); }
@@ -315,22 +381,21 @@ private:
     /// Samples per batch that give a probe the wanted relative standard error, judged by a pilot of batches of `batch`.
     [[nodiscard]] double wanted_batch(const std::vector<probe_record>& pilots, std::size_t batch) const {
         running_mean spread;
-        for (const probe_record& r : pilots) {
-            for (std::size_t c = 0; c < r.channels; ++c) { spread.add(std::sqrt(r.batch_variance(c)) / below(r, c)); }
-        }
+        for (const probe_record& r : pilots) { spread.add(spread_of(r)); }
         return static_cast<double>(batch) / probe_batches * square(spread.mean() / (options_.noise * options_.target));
     }
 
+    /// What the budget allows, the look that shares it out included.
     [[nodiscard]] double affordable_batch() const {
         const double left = static_cast<double>(options_.budget) - static_cast<double>(samples_);
-        return std::floor(left / static_cast<double>(options_.probes * probe_batches));
+        return std::floor(left / (1.125 * static_cast<double>(options_.probes * probe_batches)));
     }
 
     audited_picture<T> picture_;
     audit_options options_;
     double mean_;
     double floor_;
-    pixel_shares shares_;
+    const pixel_shares& shares_;
     std::size_t uniform_{0};
     std::size_t per_batch_{1};
     bool slow_{false};

@@ -11,11 +11,13 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <aglow/core/callback.hpp>
 #include <aglow/core/random.hpp>
 #include <aglow/report/audit.hpp>
+#include <aglow/report/claim_plan.hpp>
 #include <aglow/report/decay.hpp>
 
 namespace aglow {
@@ -44,18 +46,17 @@ struct render_until_options {
     /// Smallest and largest ratio of work between two looks.
     double least_growth = 1.15;
     double most_growth = 2;
-    /// Standard errors of probes as shares of the target, instead of `audit.noise`: a look begins with the largest, and
-    /// is repeated with half of it while the probes' own noise may be what keeps the error from being certified. What
-    /// it adds to the bound costs work twice over where the error falls as its square root.
+    /// Standard errors of probes as shares of the target, instead of `audit.noise`: scouts begin with the largest, and
+    /// claims take what is cheapest between both.
     double most_noise = 1.4;
     double least_noise = 0.35;
     /// Probes of a scout, and most probes of a claim.
     std::size_t scout_probes = 100;
     std::size_t most_probes = 2000;
-    /// Work of one probe sample in the unit above; 0 where unknown. A claim takes at most `probe_share` of the work so
-    /// far, or 200 probes where that is more.
+    /// Work of one probe sample in the unit above; 0 where unknown, and then they are taken to cost nothing. A claim is
+    /// made where picture and probes together are cheapest; a scout sharper than the one before takes at most a
+    /// tenth of the work so far.
     double probe_work = 0;
-    double probe_share = 0.05;
     /// Called after every look; returning false ends the work.
     callback<const until_progress&> progress{};
 };
@@ -94,47 +95,55 @@ inline void require_until(const render_until_options& options) {
 /// The rule itself: what has been seen, and what to do next.
 class until_rule {
 public:
-    explicit until_rule(const render_until_options& options) : options_{options}, coarsest_{options.most_noise} {}
+    explicit until_rule(const render_until_options& options) : options_{options} {}
 
-    /// Small audits that claim nothing, ever sharper until it is clear whether a claim would hold.
+    /// Small audits that claim nothing, ever sharper until they tell the error, or cost too much beside the picture.
     template <std::floating_point T, Probe P, Executor E>
-    until_check scout(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+    until_check scout(const audit_ground<T>& picture, const P& probe, double work, const E& run) {
         until_check seen{};
-        for (noise_ = coarsest_;; noise_ = std::max(noise_ / 2, options_.least_noise)) {
+        const double enough = worth_a_sharper_look() ? 0.07 : 0.15;
+        for (noise_ = options_.most_noise;; noise_ = std::max(noise_ / 2, options_.least_noise)) {
             seen = look(picture, probe, work, run);
-            const bool own_noise = seen.error < 2 * noise_ * options_.audit.target;
-            if (noise_ <= options_.least_noise || !own_noise || needed_probes(seen.error) <= affordable(work)) {
-                break;
-            }
+            const double next_cost = 4 * samples_per_probe_ * static_cast<double>(seen.probes) * options_.probe_work;
+            const bool clear = seen.error_deviation < enough * seen.error;
+            if (clear || noise_ <= options_.least_noise || next_cost > 0.05 * work) { break; }
         }
-        return add(seen, deviation_);
+        return add(seen);
     }
 
-    /// How many probes a claim needs now; 0 where it is better to work on.
-    [[nodiscard]] std::size_t probes_for_claim(double work) const {
-        // A coarse look stands alone: only sharp ones follow the law of the others.
-        const until_check& last = checks_.back();
-        const double error = noise_ > options_.least_noise ? last.error + last.error_deviation : smoothed_error(work);
-        const double needed = needed_probes(error);
-        if (!(needed <= affordable(work))) { return 0; }
-        return std::max<std::size_t>(200, static_cast<std::size_t>(needed));
+    /// The cheapest claim, as far as can be told now.
+    [[nodiscard]] claim_plan plan(double work) const {
+        return cheapest_claim({.target = options_.audit.target,
+                               .z = normal_quantile(1 - miss()),
+                               .work = work,
+                               .decay = decay(),
+                               .doubt = 1 / std::sqrt(certainty2_),
+                               .ratio = ratio_.mean(),
+                               .noise = noise_,
+                               .own = own_,
+                               .samples = samples_per_probe_,
+                               .sample_work = options_.probe_work,
+                               .most_probes = options_.most_probes,
+                               .most_noise = options_.most_noise,
+                               .least_noise = options_.least_noise});
     }
 
+    /// Claims the target.
     template <std::floating_point T, Probe P, Executor E>
-    audit_result claim(const audited_picture<T>& picture, const P& probe, double work, std::size_t probes,
+    audit_result claim(const audit_ground<T>& picture, const P& probe, const claim_plan& how, double work,
                        const E& run) {
         audit_options look = fresh_options();
-        look.probes = probes;
+        look.probes = how.probes;
         look.confidence = 1 - miss();
-        look.noise = noise_;
+        look.noise = how.noise;
         ++claims_;
-        audit_result result = audit(picture, probe, look, run);
+        audit_result result = audit_on(picture, probe, look, run);
         samples_ += result.samples;
-        // Every claim that fails makes the next one dearer: it shall not fail for noise again.
-        if (result.status != audit_status::certified) { coarsest_ = std::max(noise_ / 2, options_.least_noise); }
-        if (result.broken_pixels > 0) { return result; }
-        const double error = result.mean_error_deviation / std::sqrt(static_cast<double>(probes));
-        add({work, result.mean_error, error, result.mean_error_bound, probes}, result.mean_error_deviation);
+        if (result.mean_error <= 0) { return result; }
+        const double share =
+            result.mean_error_deviation / std::sqrt(static_cast<double>(how.probes)) / result.mean_error;
+        ratio_.add(result.mean_error_deviation / result.mean_error);
+        add({work, result.likely_error, share * result.likely_error, result.mean_error_bound, how.probes});
         return result;
     }
 
@@ -143,20 +152,14 @@ public:
 
     [[nodiscard]] decay_fit decay() const { return fit_decay(checks_for_fit_); }
 
-    /// Work at which a claim with as many probes as are allowed should hold.
-    [[nodiscard]] double predicted_work(double work) const {
-        const double goal = options_.audit.target / (1 + 1.1 * z() * ratio_.mean() / std::sqrt(affordable(work)));
-        return std::max(work, decay().work_to(goal));
-    }
-
     [[nodiscard]] double next_work(double work) const {
-        const double next = std::clamp(predicted_work(work), options_.least_growth * work, options_.most_growth * work);
+        const double next = std::clamp(plan(work).work, options_.least_growth * work, options_.most_growth * work);
         return std::min(next, options_.most_work);
     }
 
     [[nodiscard]] until_result result(until_status status, double work, audit_result certificate) const {
         until_result all{.status = status, .certificate = std::move(certificate), .decay = decay(), .work = work};
-        all.predicted_work = status == until_status::reached || checks_.empty() ? work : predicted_work(work);
+        all.predicted_work = status == until_status::reached || checks_.empty() ? work : plan(work).work;
         all.claims = claims_;
         all.probe_samples = samples_;
         all.checks = checks_;
@@ -165,25 +168,20 @@ public:
 
 private:
     template <std::floating_point T, Probe P, Executor E>
-    until_check look(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+    until_check look(const audit_ground<T>& picture, const P& probe, double work, const E& run) {
         audit_options look = fresh_options();
         look.probes = options_.scout_probes * (worth_a_sharper_look() ? 4 : 1);
         look.noise = noise_;
         look.patience = 1;
-        audit_sample<T> sample{audited_picture<T>{.image = picture.image, .guess = picture.guess}, look};
+        audit_sample<T> sample{picture, look};
         sample.draw(probe, run);
         const running_mean errors = mean_of(sample.mean_errors());
+        if (errors.mean() > 0) { ratio_.add(errors.deviation() / errors.mean()); }
+        own_ = mean_of(sample.noises()).mean();
         samples_ += sample.samples();
         samples_per_probe_ = static_cast<double>(sample.samples_per_probe());
-        deviation_ = errors.deviation();
-        return {work, errors.mean(), errors.standard_error(), 0, look.probes};
-    }
-
-    /// Probes that a claim needs where the mean error is `error`; infinite where no number is enough.
-    [[nodiscard]] double needed_probes(double error) const {
-        const double gap = options_.audit.target - error;
-        const double ratio = ratio_.count() > 0 ? ratio_.mean() : deviation_ / std::max(error, 1e-300);
-        return gap > 0 ? 1.2 * square(z() * ratio * error / gap) : std::numeric_limits<double>::infinity();
+        const likely_error likely = sample.likely();
+        return {work, likely.error, likely.deviation, 0, look.probes};
     }
 
     [[nodiscard]] audit_options fresh_options() {
@@ -192,15 +190,14 @@ private:
         return look;
     }
 
-    /// Whether a sharper look is worth its cost: the error seems to stay above the target, or to have come near it.
+    /// Whether a look with more probes is worth its cost: the error seems to stay above the target, or to need much
+    /// more work, or to have come near the target.
     [[nodiscard]] bool worth_a_sharper_look() const {
         if (distinct_ < 3) { return false; }
-        return decay().floor > 0.8 * options_.audit.target || checks_.back().error < 1.5 * options_.audit.target;
-    }
-
-    /// The error now, by all measurements together where they are enough for a fit.
-    [[nodiscard]] double smoothed_error(double work) const {
-        return distinct_ < 3 ? checks_.back().error : decay().at(work);
+        const decay_fit fit = decay();
+        const double work = checks_.back().work;
+        return fit.floor > 0.8 * options_.audit.target || fit.work_to(options_.audit.target) > 8 * work ||
+               checks_.back().error < 1.5 * options_.audit.target;
     }
 
     [[nodiscard]] double miss() const {
@@ -208,35 +205,27 @@ private:
         return (1 - options_.audit.confidence) * 6 / square(pi<double> * k);
     }
 
-    [[nodiscard]] double z() const { return normal_quantile(1 - miss()); }
-
-    [[nodiscard]] double affordable(double work) const {
-        const double most = static_cast<double>(options_.most_probes);
-        if (!(options_.probe_work > 0)) { return most; }
-        return std::clamp(options_.probe_share * work / (options_.probe_work * samples_per_probe_), 200.0, most);
-    }
-
-    until_check add(const until_check& check, double deviation) {
+    until_check add(const until_check& check) {
         if (checks_.empty() || checks_.back().work < check.work) { ++distinct_; }
         checks_.push_back(check);
-        checks_for_fit_.push_back(
-            {check.work, check.error, std::max(check.error_deviation, 1e-9 * std::abs(check.error))});
-        if (check.error > 0) { ratio_.add(deviation / check.error); }
+        const double deviation = std::max(check.error_deviation, 1e-9 * std::abs(check.error));
+        checks_for_fit_.push_back({check.work, check.error, deviation});
+        if (check.error > 0) { certainty2_ += square(check.error / deviation); }
         return check;
     }
 
     const render_until_options& options_;
-    double coarsest_;  ///< noise that a look begins with, as a share of the target
     std::vector<until_check> checks_{};
     std::vector<measured_error> checks_for_fit_{};
     std::size_t distinct_{0};
     std::size_t claims_{0};
     std::size_t samples_{0};
     std::uint64_t looks_{0};
-    running_mean ratio_{};  ///< standard deviation over mean of a probe's error
+    running_mean ratio_{};     ///< standard deviation over mean of a probe's error
+    double certainty2_{1e-9};  ///< sum over looks of (error / its standard error)²
+    double noise_{1};          ///< of the last scout's probes, as a share of the target
+    double own_{0};            ///< mean size of that
     double samples_per_probe_{1};
-    double noise_{0};      ///< of the last look's probes, as a share of the target
-    double deviation_{0};  ///< of their errors
 };
 
 }  // namespace detail
@@ -257,16 +246,19 @@ template <typename Advance, Probe P, Executor E = in_sequence>
             certificate = detail::refuse_broken(picture, options.audit);
             return rule.result(until_status::broken, work, certificate);
         }
-        until_check last = rule.scout(picture, probe, work, run);
+        // A claim is on the mean alone: it needs no probes for the error bars of classes.
+        const std::remove_cvref_t<decltype(picture)> plain{.image = picture.image, .guess = picture.guess};
+        const detail::audit_ground ground{plain, options.audit};
+        until_check last = rule.scout(ground, probe, work, run);
         const bool out_of_work = work >= options.most_work;
-        const std::size_t probes =
-            out_of_work ? std::max<std::size_t>(200, options.audit.probes) : rule.probes_for_claim(work);
-        if (probes > 0) {
-            certificate = rule.claim(picture, probe, work, probes, run);
+        claim_plan plan = rule.plan(work);
+        if (out_of_work) { plan = {work, std::max<std::size_t>(200, options.audit.probes), options.audit.noise}; }
+        if (plan.work <= work) {
+            certificate = rule.claim(ground, probe, plan, work, run);
             last.bound = certificate.mean_error_bound;
         }
         const bool reached = certificate.status == audit_status::certified;
-        const bool going_on = !options.progress || options.progress({last, reached ? work : rule.predicted_work(work)});
+        const bool going_on = !options.progress || options.progress({last, reached ? work : rule.plan(work).work});
         if (reached) { return rule.result(until_status::reached, work, certificate); }
         if (!going_on) { return rule.result(until_status::cancelled, work, certificate); }
         if (rule.hopeless()) { return rule.result(until_status::unreachable, work, certificate); }
