@@ -62,7 +62,7 @@ struct ladder {
          technique::final_gather,
          {{.samples = 2, .caustic = 25'000, .indirect = 20'000, .rays = 8, .every = 8},
           {.samples = 4, .caustic = 100'000, .indirect = 50'000, .rays = 16},
-          {.samples = 16, .caustic = 200'000, .indirect = 100'000, .rays = 16, .full = full},
+          {.samples = 16, .caustic = 200'000, .indirect = 100'000, .rays = 16},
           {.samples = 16, .caustic = 400'000, .indirect = 200'000, .rays = 64, .full = full}}},
         {"gather cache",
          technique::gather_cache,
