@@ -82,7 +82,7 @@ tally calibrate(const known_scene& scene, const judged_picture& picture) {
     const auto probe = [&](std::size_t pixel, std::uint64_t seed, std::size_t) { return scene.look(pixel, seed); };
     aglow::audit_options options{.probes = 400, .sample_bound = scene.sample_bound()};
     // What the pool can give.
-    options.budget = options.probes * aglow::probe_batches * scene.samples_per_look();
+    options.budget = 9 * options.probes * aglow::probe_batches * scene.samples_per_look() / 8;
     const true_errors truth = errors_of(scene, picture, options.dark);
     // A target near the true error: what a false certificate would take least luck for.
     options.target = 0.97 * truth.mean_relative;
@@ -115,7 +115,7 @@ std::size_t certified(const known_scene& scene, const judged_picture& picture, a
 void control(const known_scene& scene, const char* what, const judged_picture& picture, double target,
              double bias_target, bool should_pass) {
     aglow::audit_options options{.target = target, .probes = 1000, .sample_bound = scene.sample_bound()};
-    options.budget = options.probes * aglow::probe_batches * scene.samples_per_look();
+    options.budget = 9 * options.probes * aglow::probe_batches * scene.samples_per_look() / 8;
     if (bias_target > 0) { options.bias_target = bias_target; }
     const std::size_t trials = std::min<std::size_t>(scene.how().certificates, 100);
     const std::size_t passed = certified(scene, picture, options, trials);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
@@ -115,24 +116,15 @@ private:
         }
     }
 
+    /// By more photons and samples than an audit takes, and by the true light.
     void find_caustics() {
-        const auto maps = aglow::trace_photons(scene_, scene_.lights(), {.caustic = 200'000}, aglow::own_threads{});
-        const aglow::photon_map<rgb, float> nothing;
-        const std::vector<float> with = seen_through(maps.caustic);
-        const std::vector<float> without = seen_through(nothing);
-        for (std::size_t i = 0; i < with.size(); i += 3) {
-            const float light = truth_[i] + truth_[i + 1] + truth_[i + 2];
-            const float caustic = with[i] + with[i + 1] + with[i + 2] - without[i] - without[i + 1] - without[i + 2];
-            caustic_.push_back(caustic > 0.1f * light);
+        const std::vector<float> light =
+            aglow::caustic_light(scene_, scene_.lights(), eye(), effort_.pixels, effort_.pixels,
+                                 {.photons = 200'000, .samples = 16, .seed = 3}, aglow::own_threads{});
+        caustic_.assign(truth_.size() / 3, 0);
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            caustic_[i] = light[i] > 0.1f * std::max({truth_[3 * i], truth_[3 * i + 1], truth_[3 * i + 2]});
         }
-    }
-
-    /// A picture of lamps and of what one photon map lights.
-    [[nodiscard]] std::vector<float> seen_through(const aglow::photon_map<rgb, float>& map) const {
-        const aglow::layered_integrator integrator{scene_, scene_.lights(), aglow::map_layer<rgb, float>{map}};
-        aglow::film<rgb> film{effort_.pixels, effort_.pixels};
-        film.expose(eye(), integrator, {.samples = 16, .seed = 3}, aglow::own_threads{});
-        return values_of(film);
     }
 
     std::string name_;
@@ -148,11 +140,12 @@ private:
 struct judged_picture {
     std::vector<float> values{};
     std::vector<float> guess{};
-    std::vector<std::uint32_t> classes{};  ///< feature + 2 * hard, or dark
+    std::vector<std::uint32_t> classes{};  ///< feature + 2 * hard, or dark, or caustic
     std::vector<char> hard{};
     std::size_t pixels{0};
 
     static constexpr std::uint32_t dark_class = 4;
+    static constexpr std::uint32_t caustic_class = 5;
 
     [[nodiscard]] aglow::audited_picture<float> audited() const {
         return {.image = {values, pixels, pixels, 3}, .guess = guess, .classes = classes};
@@ -173,6 +166,8 @@ struct judged_picture {
     std::vector<double> sorted = hardness;
     const auto quarter = sorted.begin() + static_cast<std::ptrdiff_t>(3 * count / 4);
     std::nth_element(sorted.begin(), quarter, sorted.end());
+    const std::vector<float> caustic = aglow::caustic_light(scene.scene(), scene.scene().lights(), scene.eye(),
+                                                            film.width(), film.height(), {}, aglow::own_threads{});
     std::vector<double> grays;
     for (std::size_t i = 0; i < count; ++i) { grays.push_back(result.gray(i)); }
     const auto tenth = grays.begin() + static_cast<std::ptrdiff_t>(count / 10);
@@ -180,8 +175,11 @@ struct judged_picture {
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t hard = hardness[i] > *quarter ? 2 : 0;
         const bool dark = result.gray(i) <= *tenth;
-        result.classes.push_back(dark ? judged_picture::dark_class
-                                      : hard + static_cast<std::uint32_t>(scene.feature()[i]));
+        const float most = std::max({result.values[3 * i], result.values[3 * i + 1], result.values[3 * i + 2]});
+        const std::uint32_t kind =
+            dark ? judged_picture::dark_class : hard + static_cast<std::uint32_t>(scene.feature()[i]);
+        const bool in_caustic = !caustic.empty() && caustic[i] > 0.1f * most;
+        result.classes.push_back(in_caustic ? judged_picture::caustic_class : kind);
         result.hard.push_back(hard > 0);
     }
     return result;

@@ -18,7 +18,11 @@ class audited_film {
 public:
     /// `feature` tells of each pixel whether another primitive is near; together with how large the guess is beside the
     /// light, and with the darkest tenth, it makes the classes that error bars hold in.
-    audited_film(const aglow::film<vec3<float>>& film, const std::vector<char>& feature) : audited_film{film} {
+    /// `caustic` is the light that caustics add to each pixel: those that owe a tenth of theirs to them are one class
+    /// more; empty where the scene has none.
+    audited_film(const aglow::film<vec3<float>>& film, const std::vector<char>& feature,
+                 const std::vector<float>& caustic)
+        : audited_film{film} {
         std::vector<double> hardness;
         std::vector<double> light;
         for (std::size_t i = 0; i < guess_.size(); ++i) {
@@ -29,7 +33,9 @@ public:
         const double dark = quantile(light, 0.1);
         for (std::size_t i = 0; i < light.size(); ++i) {
             const std::uint32_t kind = (hardness[i] > hard ? 2u : 0u) + (feature[i] ? 1u : 0u);
-            classes_.push_back(light[i] <= dark ? 4u : kind);
+            const float most = std::max({values_[3 * i], values_[3 * i + 1], values_[3 * i + 2]});
+            const bool in_caustic = !caustic.empty() && caustic[i] > 0.1f * most;
+            classes_.push_back(in_caustic ? 5u : light[i] <= dark ? 4u : kind);
         }
     }
 

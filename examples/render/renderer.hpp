@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/path_trace.hpp>
@@ -318,7 +319,9 @@ private:
     /// Audits a finished film: the statements, and the error bars of all pixels.
     void audit(const aglow::film<S>& film) {
         const auto begun = clock::now();
-        const audited_film numbers{film, features()};
+        const audited_film numbers{film, features(),
+                                   aglow::caustic_light(scene_, lights_, eye(), options_.width, options_.height,
+                                                        {.seed = options_.seed}, run_)};
         const aglow::audit_options o{
             .target = options_.until > 0 ? options_.until : 0.05, .seed = options_.seed, .stream = 1};
         const aglow::audit_result stated =

@@ -86,6 +86,7 @@
 // algorithms: light on its way
 #include <aglow/algorithms/cache_candidates.hpp>
 #include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/energy_ledger.hpp>
 #include <aglow/algorithms/fill_cache.hpp>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
@@ -93,4 +94,13 @@ TEMPLATE_TEST_CASE("archetypes: the photon map, gathered and cached too, is with
         200);
     near_truth(aglow::photon_mapping{scene, light, {.photons = {.indirect = 20'000}}, run}, 1000);
     near_truth(aglow::final_gathering{scene, light, {.photons = {.direct = 5000, .indirect = 20'000}}, run}, 200);
+}
+
+TEMPLATE_TEST_CASE("archetypes: a room without mirrors has no caustics anywhere", "", float, double) {
+    using T = TestType;
+    const archetypes::scene<T> scene;
+    const archetypes::lamp<T> light{intensity<T>()};
+    const auto eye = [](const aglow::vec2<T>& film) { return all_around<T>(film * (T(1) / 16)); };
+    const auto seen = aglow::caustic_light(scene, light, eye, 16, 16, {.photons = 1000}, archetypes::executor{});
+    for (const auto& level : seen) { CHECK(level == 0); }
 }

@@ -1,0 +1,79 @@
+// Where caustics fall in a picture, whoever makes it: an audit gives such pixels error bars of their own.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <aglow/algorithms/film.hpp>
+#include <aglow/algorithms/layers.hpp>
+#include <aglow/algorithms/path_walk.hpp>
+#include <aglow/algorithms/plan.hpp>
+#include <aglow/algorithms/trace_photons.hpp>
+
+namespace aglow {
+
+/// How well caustics are looked for: a sign is enough to tell classes of pixels apart.
+struct caustic_light_options {
+    std::size_t photons{100'000};
+    std::uint32_t samples{2};  ///< per pixel
+    std::uint64_t seed{0};
+    density_options density{};
+};
+
+namespace detail {
+
+/// An integrator that sees nothing but one photon map, over mirrors and through glass too.
+template <Scene World, Illuminator Lights>
+class map_view {
+public:
+    using spectrum = spectrum_of<World>;
+    using scalar = scalar_of<World>;
+
+    map_view(const World& scene, const Lights& lights, const map_layer<spectrum, scalar>& layer)
+        : scene_{scene}, lights_{lights}, layer_{layer} {}
+
+    template <Numbers N>
+    [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
+        const auto shade = [&](auto& walk, const walk_stop<World>& stop) {
+            walk.add(layer_(stop.hit, stop.wo, stop.error, walk.numbers(), stop.bounce));
+            return stop.hit.lobes() & lobe_set::specular;
+        };
+        // A walk of mirrors alone, by a rule under which it takes no light for itself.
+        path_walk<World, Lights, N, true> walk{scene_, lights_, numbers, emission_rule::no_caustics, options_, eye};
+        return {walk.run(shade, options_.split).radiance, 0};
+    }
+
+private:
+    const World& scene_;
+    const Lights& lights_;
+    const map_layer<spectrum, scalar>& layer_;
+    path_options options_{};
+};
+
+}  // namespace detail
+
+/// Radiance that caustics add to each pixel of the picture of `eye`, W/(m² sr), the largest band, row by row from the
+/// top. Empty, and without cost, where the scene's plan says that it can have none. The same for any threads of `run`.
+template <Scene World, Illuminator Lights, typename Eye, Executor Run = in_sequence>
+    requires Emitter<Lights>
+[[nodiscard]] std::vector<band_of<spectrum_of<World>>> caustic_light(const World& scene, const Lights& lights,
+                                                                     const Eye& eye, std::size_t width,
+                                                                     std::size_t height,
+                                                                     const caustic_light_options& options = {},
+                                                                     const Run& run = {}) {
+    using S = spectrum_of<World>;
+    std::vector<band_of<S>> light;
+    if (!plan_for(scene).caustic_map) { return light; }
+    const auto maps = trace_photons(scene, lights, {.caustic = options.photons, .seed = options.seed}, run);
+    const map_layer<S, scalar_of<World>> layer{maps.caustic, options.density};
+    film<S> seen{width, height};
+    seen.expose(eye, detail::map_view<World, Lights>{scene, lights, layer},
+                {.samples = options.samples, .seed = options.seed}, run);
+    for (std::size_t i = 0; i < width * height; ++i) {
+        light.push_back(max_component(seen.radiance(i % width, i / width)));
+    }
+    return light;
+}
+
+}  // namespace aglow
