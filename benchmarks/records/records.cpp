@@ -112,8 +112,8 @@ outcome run(const world& scene, const aglow::path_reader<world, host::light_set<
         const bool last = attempt >= 6;
         const double begun = cpu_seconds();
         aglow::irradiance_cache<S, T, Features> cache{scene.bounds(), o};
-        const auto filled =
-            fill_cache(cache, std::span{where}, light, {.rays = last ? e.rays : std::min(256u, e.rays)}, threads);
+        const aglow::fill_cache_options fill{.rays = last ? e.rays : std::min(256u, e.rays), .scatter = 0};
+        const auto filled = fill_cache(cache, std::span{where}, light, fill, threads);
         const auto frozen = cache.freeze(threads);
         result = {cache.size(), filled.rays, cpu_seconds() - begun, 0, 0, 0};
         const double ratio = static_cast<double>(cache.size()) / static_cast<double>(e.records);

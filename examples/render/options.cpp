@@ -108,7 +108,7 @@ void add_method(CLI::App& app, render_options& o, std::string& how) {
     add("--estimate", o.photons_per_estimate, "N",
         "photons per estimate [" + std::to_string(aglow::density_options{}.count) + "]")
         ->check(between(2, 100000));
-    add("--gather-rays", o.gather_rays, "N", "rays of each cache record [400] or final gather [64]")
+    add("--gather-rays", o.gather_rays, "N", "rays of each cache record [350] or final gather [64]")
         ->check(between(1, 1 << 20));
     add("--accuracy", o.accuracy, "X", "of the irradiance cache: smaller is finer")->check(between(1e-4, 10.0));
 }

@@ -44,6 +44,20 @@ struct glow_of {
     }
 };
 
+/// Where x < 0 all rays bring 1; elsewhere few bring much and the others nothing.
+struct flickering {
+    double chance{0.05};
+    double mean{1};
+    glowing_room room{};
+    incoming_light<rgb, float> operator()(const ray<float>& r, const random_numbers<float>& numbers) const {
+        const float bright = numbers.at(1, purpose::light).next_1d() < static_cast<float>(chance)
+                                 ? static_cast<float>(mean / chance)
+                                 : 0;
+        return {rgb{r.origin.x < 0 ? 1 : bright}, room.meet(r).second};
+    }
+    [[nodiscard]] double scatter() const { return std::sqrt(1 / chance - 1); }
+};
+
 bool same(const cache& a, const cache& b) {
     if (a.size() != b.size()) { return false; }
     for (std::uint32_t i = 0; i < a.size(); ++i) {
@@ -110,6 +124,40 @@ TEST_CASE("fill_cache: the filled cache agrees with Lambert's formula, better wi
     const double fine = error(0.06, 1000);
     CHECK(coarse < 0.04);
     CHECK(fine < 0.012);
+}
+
+TEST_CASE("fill_cache: where rays scatter, records get more of them and stay right in the mean") {
+    const flickering incoming;
+    cache even{1.732f};
+    cache keen{1.732f};
+    const auto first = fill_cache(even, around(4000), incoming, {.rays = 100, .scatter = 0});
+    const auto second = fill_cache(keen, around(4000), incoming, {.rays = 100});
+    REQUIRE(even.size() == keen.size());
+    CHECK(second.rays > 4 * first.rays);
+    double light = 0;
+    double rays = 0;
+    std::uint32_t calm = 0;
+    std::uint32_t more = 0;
+    std::uint32_t wild = 0;
+    for (std::uint32_t i = 0; i < keen.size(); ++i) {
+        CHECK(keen[i].position() == even[i].position());
+        CHECK(keen[i].radius() == even[i].radius());
+        if (keen[i].position().x == -1) {
+            ++calm;
+            CHECK(keen[i].rays() == even[i].rays());
+            CHECK(keen[i].irradiance() == even[i].irradiance());
+        }
+        if (keen[i].position().x < 1) { continue; }
+        ++wild;
+        more += keen[i].rays() > 3 * even[i].rays();
+        light += static_cast<double>(keen[i].irradiance().x) * keen[i].rays();
+        rays += keen[i].rays();
+    }
+    CHECK(calm > 10);
+    CHECK(wild > 10);
+    CHECK(more > 0.9 * wild);
+    // Four standard errors of all rays together.
+    CHECK(std::abs(light / rays / pi<double> / incoming.mean - 1) < 4 * incoming.scatter() / std::sqrt(rays));
 }
 
 TEST_CASE("fill_cache: in a furnace every place has pi times the radiance") {

@@ -500,6 +500,60 @@ TEST_CASE("irradiance_cache: what is exact is not smoothed") {
     for (std::uint32_t i = 0; i < frozen.size(); ++i) { CHECK(frozen[i].irradiance() == wave(frozen[i].position().x)); }
 }
 
+TEST_CASE("irradiance_cache: smoothing trusts a record of more rays more") {
+    const auto agreed = [](std::uint32_t rays) {
+        irradiance_cache<float> c{10.f, by_distance()};
+        for (const float light : {1.f, 1.2f}) {
+            irradiance_estimate<float, float> e;
+            e.position = {light, 0, 0};
+            e.axes = frame<float>{up};
+            e.irradiance = light;
+            e.rays = light > 1 ? rays : 100;
+            e.relative_noise = 2 / std::sqrt(static_cast<float>(e.rays));
+            e.mean_inverse_distance = 1;
+            c.insert(e);
+        }
+        return c.freeze()[0].irradiance();
+    };
+    CHECK(agreed(100) == Approx(1.1).epsilon(0.01));
+    CHECK(agreed(900) == Approx(1.18).epsilon(0.01));
+}
+
+TEST_CASE("irradiance_cache: a record whose light is replaced keeps its place and reach") {
+    cache c{10.f, by_distance()};
+    const auto first = estimate_at({1, 2, 0}, up, {1, 2, 3}, 2);
+    REQUIRE(c.insert(first) == record_status::inserted);
+    const cache::record before = c[0];
+    auto second = estimate_at({5, 5, 5}, up, {4, 5, 6}, 0.1f);
+    second.rays = 400;
+    CHECK(c.replace(0, second));
+    CHECK(c[0].irradiance() == rgb{4, 5, 6});
+    CHECK(c[0].rays() == 400);
+    CHECK(c[0].position() == before.position());
+    CHECK(c[0].longest_radius() == before.longest_radius());
+    second.irradiance.x = std::numeric_limits<float>::quiet_NaN();
+    CHECK_FALSE(c.replace(0, second));
+    CHECK(c[0].irradiance() == rgb{4, 5, 6});
+}
+
+TEST_CASE("irradiance_cache: scatter is told by the records around that face the same way, never by one's own") {
+    cache c{10.f, by_distance()};
+    const auto add = [&](const vec3<float>& at, const vec3<float>& normal, float noise) {
+        auto e = estimate_at(at, normal, {1, 1, 1}, 1);
+        e.relative_noise = noise;
+        c.insert(e);
+    };
+    add({0, 0, 0}, up, 0.5f);
+    CHECK(c.scatter_around(0) == 0);
+    add({0, 0, 0}, -up, 0.5f);
+    add({9, 0, 0}, up, 0.5f);
+    CHECK(c.scatter_around(0) == 0);
+    add({0.5f, 0, 0}, up, 0.1f);
+    add({0, 1.5f, 0}, up, 0.2f);
+    // A hundred rays each.
+    CHECK(c.scatter_around(0) == Approx(10 * std::sqrt((0.01 + 0.04) / 2)).epsilon(0.01));
+}
+
 TEST_CASE("irradiance_cache: nearest finds a record where lookup finds none, on the right side") {
     cache c{10.f, by_distance()};
     c.insert(estimate_at({0, 0, 0}, up, {1, 1, 1}, 1));

@@ -145,6 +145,21 @@ public:
         return record_status::inserted;
     }
 
+    /// Takes the light of another estimate at the place of record `index`, whose reach stays as it is; false where the
+    /// estimate is bad. Expects `index < size()` and the record's normal.
+    bool replace(std::uint32_t index, const estimate& e) {
+        item& one = tree_[index];
+        if (!is_usable(e, record_reach<T>{.radius = one.record.radius()})) { return false; }
+        one.record = one.record.with_light(e);
+        return true;
+    }
+
+    /// How much one gather ray around record `index` differs from their mean, relative to it, as the noise of the
+    /// records around it tells, without its own: what it happened to see decides nothing. 0 where there are none.
+    [[nodiscard]] T scatter_around(std::uint32_t index) const requires(Features.noise) {
+        return detail::scatter_around(tree_, index, limits_);
+    }
+
     [[nodiscard]] std::uint32_t size() const { return tree_.size(); }
     [[nodiscard]] const record& operator[](std::uint32_t index) const { return tree_[index].record; }
     [[nodiscard]] const irradiance_cache_options& options() const { return options_; }

@@ -216,6 +216,15 @@ public:
         return result;
     }
 
+    /// The same place and reach with the light of another estimate there. Expects one that `is_usable`.
+    [[nodiscard]] irradiance_record with_light(const irradiance_estimate<S, T>& e) const {
+        irradiance_record result{e, {.radius = radius_}};
+        result.position_ = position_;
+        result.normal_ = normal_;
+        result.ellipse_ = ellipse_;
+        return result;
+    }
+
 private:
     // `detail::record_lanes` knows the order of these.
     vec3<T> position_{};

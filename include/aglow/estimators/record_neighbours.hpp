@@ -58,46 +58,77 @@ template <typename Tree, Spectrum S, std::floating_point T, record_features F>
     return *quartile / irradiance;
 }
 
+/// Relative standard deviation of one gather ray, in the mean of squares over the records within two reaches of record
+/// `index` that face the same way, itself left out. `tree` visits items with `.record`, and tells their number.
+template <typename Tree, std::floating_point T>
+[[nodiscard]] T scatter_around(const Tree& tree, std::uint32_t index, const lookup_limits<T>& limits) {
+    const auto& here = tree[index].record;
+    double sum{};
+    std::uint32_t count{};
+    tree.visit_within(here.position(), 2 * here.longest_radius(), [&](const auto& item, std::uint32_t number) {
+        const verdict judged = look(here, item.record.position(), item.record.normal(), limits).judged;
+        const bool alike = judged == verdict::used || judged == verdict::distance;
+        if (number == index || !alike) { return; }
+        sum += square(static_cast<double>(item.record.relative_noise())) * item.record.rays();
+        ++count;
+    });
+    return count > 0 ? static_cast<T>(std::sqrt(sum / count)) : T(0);
+}
+
+/// By how many rays a record was made; 1 where records do not keep it.
+template <Spectrum S, std::floating_point T, record_features F>
+[[nodiscard]] double rays_of(const irradiance_record<S, T, F>& r) {
+    if constexpr (F.noise) {
+        return std::max(1u, r.rays());
+    } else {
+        return 1;
+    }
+}
+
 /// The record with the irradiance that it and all records that reach it agree on: their first-order predictions weighed
-/// by one over the expected squared error, which is their common variance and the square of what each errs by. Their
-/// common one, since a record's own goes up and down with its irradiance, and would pull towards the dark. `tree`
-/// visits items with `.record`, and tells their number, which is where in `bends` to look.
+/// by one over the expected squared error, which is their variance and the square of what each errs by. One ray's
+/// variance is what they have in common, since a record's own goes up and down with its irradiance, and would pull
+/// towards the dark. `tree` visits items with `.record`, and tells their number, which is where in `bends` to look.
 template <typename Tree, Spectrum S, std::floating_point T, record_features F>
 [[nodiscard]] irradiance_record<S, T, F> smoothed(const Tree& tree, const irradiance_record<S, T, F>& r,
                                                   std::span<const T> bends, const lookup_limits<T>& limits) {
     struct prediction {
         S irradiance;
         double bias2;
+        double rays;
     };
     std::vector<prediction> predictions;
-    double variance{};
+    double ray_variance{};
     const vec3<T> normal = r.normal();
     tree.visit_covering(r.position(), [&](const auto& item, std::uint32_t index) {
         const irradiance_record<S, T, F>& other = item.record;
         const record_view<T> view = look(other, r.position(), normal, limits);
         if (view.judged != verdict::used) { return; }
-        variance += variance_of(other);
+        ray_variance += variance_of(other) * rays_of(other);
         const T bias = bends[index] * view.t2 * static_cast<T>(max_component(other.irradiance()));
-        predictions.push_back({other.extrapolate(view.local, view.normal), square(static_cast<double>(bias))});
+        predictions.push_back(
+            {other.extrapolate(view.local, view.normal), square(static_cast<double>(bias)), rays_of(other)});
     });
-    if (!(variance > 0)) { return r; }
-    variance /= static_cast<double>(predictions.size());
+    if (!(ray_variance > 0)) { return r; }
+    ray_variance /= static_cast<double>(predictions.size());
+    const double own = ray_variance / rays_of(r);
     S sum{};
     T weights{};
-    T weights2{};
+    double variances{};
     for (const prediction& p : predictions) {
-        // What differs by more than noise explains (the difference of two has twice the variance) lies across an edge.
+        const double variance = ray_variance / p.rays;
+        // What differs by more than noise explains (the difference of two has the variance of both) lies across an
+        // edge.
         const double apart = static_cast<double>(largest_difference<S, T>(p.irradiance, r.irradiance()));
-        const double edge2 = std::max(0.0, square(apart) - 8 * variance);
-        const T weight = static_cast<T>(variance / (variance + p.bias2 + edge2));
+        const double edge2 = std::max(0.0, square(apart) - 4 * (own + variance));
+        const T weight = static_cast<T>(own / (variance + p.bias2 + edge2));
         sum = sum + p.irradiance * static_cast<band_of<S>>(weight);
         weights += weight;
-        weights2 += weight * weight;
+        variances += square(static_cast<double>(weight)) * variance;
     }
     const S mean = sum * static_cast<band_of<S>>(1 / weights);
     const T most = static_cast<T>(max_component(mean));
-    return r.with_irradiance(
-        mean, most > 0 ? static_cast<T>(std::sqrt(variance * static_cast<double>(weights2))) / (weights * most) : T(0));
+    return r.with_irradiance(mean, most > 0 ? static_cast<T>(std::sqrt(variances)) / (weights * most) : T(0));
 }
 
 }  // namespace aglow::detail
