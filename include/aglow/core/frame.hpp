@@ -37,7 +37,14 @@ struct frame {
     frame() = default;
 
     /// Expects unit `normal`.
-    explicit frame(const vec3<T>& normal) : frame{tilt<T>{normal}} {}
+    explicit frame(const vec3<T>& normal) : z{normal} {
+        const T side = std::copysign(T(1), normal.z);
+        const T a = T(-1) / (side + normal.z);
+        const T b = normal.x * normal.y * a;
+        x = {T(1) + side * normal.x * normal.x * a, side * b, -side * normal.x};
+        y = {b, side + normal.y * normal.y * a, -normal.y};
+    }
+    /// The same of what is known of it by now; written out, since one through the other is more code in every path.
     explicit frame(const tilt<T>& t) : z{t.normal} {
         const T b = z.x * z.y * t.a;
         x = {T(1) + t.side * z.x * z.x * t.a, t.side * b, -t.side * z.x};

@@ -105,8 +105,10 @@ public:
         for (noise_ = options_.most_noise;; noise_ = std::max(noise_ / 2, options_.least_noise)) {
             seen = look(picture, probe, work, run);
             const double next_cost = 4 * samples_per_probe_ * static_cast<double>(seen.probes) * options_.probe_work;
-            const bool clear = seen.error_deviation < enough * seen.error;
-            if (clear || noise_ <= options_.least_noise || next_cost > 0.05 * work) { break; }
+            const bool clear = seen.error_deviation < enough * seen.error && !slow_;
+            // Where noise falls slowly, a picture that goes on does not make it clearer: sharper probes do.
+            const double most_cost = (slow_ ? 0.5 : 0.05) * work;
+            if (clear || noise_ <= options_.least_noise || next_cost > most_cost) { break; }
         }
         return add(seen);
     }
@@ -178,6 +180,7 @@ private:
         const running_mean errors = mean_of(sample.mean_errors());
         if (errors.mean() > 0) { ratio_.add(errors.deviation() / errors.mean()); }
         own_ = mean_of(sample.noises()).mean();
+        slow_ = sample.heavy_tailed();
         samples_ += sample.samples();
         samples_per_probe_ = static_cast<double>(sample.samples_per_probe());
         const likely_error likely = sample.likely();
@@ -225,6 +228,7 @@ private:
     double certainty2_{1e-9};  ///< sum over looks of (error / its standard error)²
     double noise_{1};          ///< of the last scout's probes, as a share of the target
     double own_{0};            ///< mean size of that
+    bool slow_{false};         ///< whether it fell more slowly with their samples than a finite variance lets it
     double samples_per_probe_{1};
 };
 
