@@ -128,6 +128,7 @@
 #include <aglow/report/image_error.hpp>
 #include <aglow/report/image_view.hpp>
 #include <aglow/report/probe.hpp>
+#include <aglow/report/probe_reader.hpp>
 #include <aglow/report/quantiles.hpp>
 #include <aglow/report/render_until.hpp>
 #include <aglow/report/running_mean.hpp>

@@ -26,6 +26,12 @@ namespace aglow {
 
 namespace detail {
 
+[[nodiscard]] inline std::vector<double> clipped(std::span<const double> values) {
+    std::vector<double> all(values.begin(), values.end());
+    for (double& x : all) { x = std::min(x, 1.0); }
+    return all;
+}
+
 /// Σ(B−I)/ΣI by the difference estimator: what the probes say of B−I against the picture's known mean. The miss
 /// probability is taken one fifth smaller than asked for: with as few probes, intervals of skewed gaps hold about a
 /// point too seldom. `unmet` is added on either side.

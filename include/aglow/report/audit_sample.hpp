@@ -13,35 +13,12 @@
 #include <aglow/core/random.hpp>
 #include <aglow/report/audit_pixels.hpp>
 #include <aglow/report/audit_result.hpp>
-#include <aglow/report/confidence.hpp>
 #include <aglow/report/conformal.hpp>
 #include <aglow/report/probe.hpp>
+#include <aglow/report/probe_reader.hpp>
 #include <aglow/report/running_mean.hpp>
 
 namespace aglow::detail {
-
-[[nodiscard]] inline std::vector<double> clipped(std::span<const double> values) {
-    std::vector<double> all(values.begin(), values.end());
-    for (double& x : all) { x = std::min(x, 1.0); }
-    return all;
-}
-
-/// What an error probably is, and the standard error of that.
-struct likely_error {
-    double error{0};
-    double deviation{0};
-};
-
-/// √(2F² − G²), F and G the means of `all` and `halves`: E|e+n|² is about e² + c·Var n, and that of halves twice as far
-/// off. Where noise is nearly all that was seen, a third of it is left, and little is sure.
-[[nodiscard]] inline likely_error without_noise(std::span<const double> all, std::span<const double> halves) {
-    const double f = mean_of(all).mean();
-    const double g = mean_of(halves).mean();
-    const double error = std::sqrt(std::max(2 * f * f - g * g, f * f / 9));
-    running_mean influence;
-    for (std::size_t i = 0; i < all.size(); ++i) { influence.add((2 * f * all[i] - g * halves[i]) / error); }
-    return {error, influence.standard_error()};
-}
 
 /// Draws the probes of an audit and turns them into one number each, per statement. Expects options that were checked.
 template <std::floating_point T>
@@ -52,7 +29,7 @@ public:
         : picture_{ground.picture},
           options_{options},
           mean_{ground.mean},
-          floor_{ground.floor},
+          of_{picture_.image, ground.floor},
           shares_{ground.shares} {}
 
     /// A pilot tells how many samples a probe needs; then the probes, all of them anew with more samples while their
@@ -75,7 +52,7 @@ public:
     }
 
     [[nodiscard]] double mean() const { return mean_; }
-    [[nodiscard]] double dark_floor() const { return floor_; }
+    [[nodiscard]] double dark_floor() const { return of_.floor; }
     [[nodiscard]] std::size_t probes() const { return records_.size() + extra_.size(); }
     [[nodiscard]] std::size_t samples_per_probe() const { return per_batch_ * probe_batches; }
     [[nodiscard]] std::size_t samples() const { return samples_; }
@@ -88,7 +65,7 @@ public:
     /// inequality that does not shrink with the variance seen (Maurer & Pontil 2009, theorem 4). 0 where noise falls as
     /// it should.
     [[nodiscard]] double unmet_error(double confidence) const {
-        return slow_ ? reach(confidence) * largest_jump([this](const probe_record& r) { return darkest(r); }) : 0;
+        return slow_ ? reach(confidence) * largest_jump([this](const probe_record& r) { return of_.darkest(r); }) : 0;
     }
 
     /// The same for the mean of `gaps()`.
@@ -100,8 +77,8 @@ public:
     /// out: their mean is the mean relative error of the picture.
     [[nodiscard]] std::vector<double> mean_errors() const {
         return each(records_.size(), [&](const probe_record& r) {
-            const double gap = less_noisy([&](unsigned chosen) { return error(r, chosen); });
-            return shares_.weight(r.pixel) * (gap + denominator_noise2(r));
+            const double gap = less_noisy([&](unsigned chosen) { return of_.error(r, chosen); });
+            return shares_.weight(r.pixel) * (gap + of_.denominator_noise2(r));
         });
     }
 
@@ -110,32 +87,29 @@ public:
     [[nodiscard]] likely_error likely() const {
         const auto seen = [&](const auto& of) { return each(records_.size(), of); };
         const std::vector<double> all =
-            seen([&](const probe_record& r) { return shares_.weight(r.pixel) * error(r, every_batch); });
+            seen([&](const probe_record& r) { return shares_.weight(r.pixel) * of_.error(r, every_batch); });
         const std::vector<double> halves = seen([&](const probe_record& r) {
-            return shares_.weight(r.pixel) * mean_over_choices<4>([&](unsigned half) { return error(r, half); });
+            return shares_.weight(r.pixel) * mean_over_choices<4>([&](unsigned half) { return of_.error(r, half); });
         });
         return without_noise(all, halves);
     }
 
     /// Weighted size of the noise of each probe, relative as its error is: half the distance of its halves.
     [[nodiscard]] std::vector<double> noises() const {
-        return each(records_.size(), [&](const probe_record& r) {
-            const double apart = mean_over_choices<4>(
-                [&](unsigned half) { return std::abs(gray(r, half) - gray(r, half ^ every_batch)); });
-            return shares_.weight(r.pixel) * apart / 2 / (std::max(gray(r, every_batch), 0.0) + floor_);
-        });
+        return each(records_.size(),
+                    [&](const probe_record& r) { return shares_.weight(r.pixel) * of_.apart(r) / 2 / of_.scale(r); });
     }
 
     /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in: never too small on
     /// average.
     [[nodiscard]] std::vector<double> plain_errors() const {
-        return each(uniform_, [&](const probe_record& r) { return error(r, every_batch); });
+        return each(uniform_, [&](const probe_record& r) { return of_.error(r, every_batch); });
     }
 
     /// Weighted B−U of each probed pixel, of the mean of its channels.
     [[nodiscard]] std::vector<double> gaps() const {
         return each(records_.size(), [&](const probe_record& r) {
-            return shares_.weight(r.pixel) * (picture_.image.gray(r.pixel) - gray(r, every_batch));
+            return shares_.weight(r.pixel) * (picture_.image.gray(r.pixel) - of_.gray(r, every_batch));
         });
     }
 
@@ -145,13 +119,12 @@ public:
         double singles = 0;
         double halves = 0;
         for (const probe_record& r : records_) {
-            const double scale = 1 / (std::max(gray(r, every_batch), 0.0) + floor_);
+            const double scale = 1 / of_.scale(r);
             singles += scale * mean_over_choices<2>([&](unsigned pair) {
                            const unsigned one = pair & (~pair + 1);
-                           return std::abs(gray(r, one) - gray(r, pair ^ one));
+                           return std::abs(of_.gray(r, one) - of_.gray(r, pair ^ one));
                        });
-            halves += scale * mean_over_choices<4>(
-                                  [&](unsigned half) { return std::abs(gray(r, half) - gray(r, half ^ every_batch)); });
+            halves += scale * of_.apart(r);
         }
         return halves > 0 ? 1 - std::log2(singles / halves) / 2 : 0;
     }
@@ -182,31 +155,6 @@ private:
     static constexpr std::uint64_t part_extra_spread = 501;
     static constexpr std::uint64_t part_anew = 1000;
     static constexpr double heavy = 0.6;  // tail index that a finite variance seldom shows
-    static constexpr unsigned every_batch = (1u << probe_batches) - 1;
-
-    [[nodiscard]] double gray(const probe_record& r, unsigned chosen) const {
-        double sum = 0;
-        for (std::size_t c = 0; c < r.channels; ++c) { sum += r.mean(chosen, c); }
-        return sum / static_cast<double>(r.channels);
-    }
-
-    /// Relative error by the chosen batches, over the best estimate of the truth: a few dark batches cannot blow it up.
-    [[nodiscard]] double error(const probe_record& r, unsigned chosen) const {
-        double sum = 0;
-        for (std::size_t c = 0; c < r.channels; ++c) {
-            const double gap = std::abs(picture_.image.at(r.pixel, c) - r.mean(chosen, c));
-            sum += gap > 0 ? gap / below(r, c) : 0;
-        }
-        return sum / static_cast<double>(r.channels);
-    }
-
-    [[nodiscard]] double below(const probe_record& r, std::size_t c) const { return std::max(r.mean(c), 0.0) + floor_; }
-
-    [[nodiscard]] double darkest(const probe_record& r) const {
-        double least = std::numeric_limits<double>::max();
-        for (std::size_t c = 0; c < r.channels; ++c) { least = std::min(least, below(r, c)); }
-        return least;
-    }
 
     [[nodiscard]] bool seems_heavy() const { return tail_index() > heavy; }
 
@@ -229,18 +177,8 @@ private:
         const bool patient = 4 * static_cast<double>(samples_per_probe()) <= most;
         const bool affordable = 4 * static_cast<double>(per_batch_) <= affordable_batch();
         if (!patient || !affordable || !seems_heavy()) { return false; }
-        const double jump = largest_jump([this](const probe_record& r) { return darkest(r); });
+        const double jump = largest_jump([this](const probe_record& r) { return of_.darkest(r); });
         return reach(options_.confidence) * jump > 0.1 * options_.target;
-    }
-
-    /// Relative variance of the best estimate: what its noise in the denominator can take off the mean error at most.
-    [[nodiscard]] double denominator_noise2(const probe_record& r) const {
-        double sum = 0;
-        for (std::size_t c = 0; c < r.channels; ++c) {
-            const double variance = r.batch_variance(c) / probe_batches;
-            sum += variance > 0 ? std::min(1.0, variance / square(below(r, c))) : 0;
-        }
-        return sum / static_cast<double>(r.channels);
     }
 
     template <typename Of>
@@ -259,8 +197,8 @@ private:
             std::vector<double> scores;
             for (const std::size_t i : members) {
                 const probe_record& r = *all[i];
-                const double gap = std::abs(picture_.image.gray(r.pixel) - gray(r, chosen));
-                scores.push_back(gap / usable_guess(picture_, r.pixel, floor_));
+                const double gap = std::abs(picture_.image.gray(r.pixel) - of_.gray(r, chosen));
+                scores.push_back(gap / usable_guess(picture_, r.pixel, of_.floor));
             }
             return conformal_quantile(scores, confidence).value_or(std::numeric_limits<double>::infinity());
         };
@@ -344,7 +282,7 @@ private:
         if (per_batch_ < 8) { return batches; }
         const std::vector<std::size_t> few(pixels.size(), per_batch_ / 8);
         std::vector<double> spreads;
-        for (const probe_record& r : draw_all(probe, run, pixels, few, part)) { spreads.push_back(spread_of(r)); }
+        for (const probe_record& r : draw_all(probe, run, pixels, few, part)) { spreads.push_back(of_.spread(r)); }
         const double mean = mean_of(spreads).mean();
         if (!(mean > 0)) { return batches; }
         for (std::size_t i = 0; i < batches.size(); ++i) {
@@ -353,13 +291,6 @@ private:
             batches[i] = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(per_batch_)));
         }
         return batches;
-    }
-
-    /// Relative standard deviation of one batch, averaged over channels.
-    [[nodiscard]] double spread_of(const probe_record& r) const {
-        double sum = 0;
-        for (std::size_t c = 0; c < r.channels; ++c) { sum += std::sqrt(r.batch_variance(c)) / below(r, c); }
-        return sum / static_cast<double>(r.channels);
     }
 
     /// Samples per batch for the wanted noise. A few single samples say little of a skewed noise, so the pilot is
@@ -381,7 +312,7 @@ private:
     /// Samples per batch that give a probe the wanted relative standard error, judged by a pilot of batches of `batch`.
     [[nodiscard]] double wanted_batch(const std::vector<probe_record>& pilots, std::size_t batch) const {
         running_mean spread;
-        for (const probe_record& r : pilots) { spread.add(spread_of(r)); }
+        for (const probe_record& r : pilots) { spread.add(of_.spread(r)); }
         return static_cast<double>(batch) / probe_batches * square(spread.mean() / (options_.noise * options_.target));
     }
 
@@ -394,7 +325,7 @@ private:
     audited_picture<T> picture_;
     audit_options options_;
     double mean_;
-    double floor_;
+    probe_reader<T> of_;
     const pixel_shares& shares_;
     std::size_t uniform_{0};
     std::size_t per_batch_{1};
