@@ -43,8 +43,7 @@ struct judged_place {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-std::vector<judged_place> judge(const world& scene, const aglow::path_reader<world, host::light_set<T>>& light,
-                                const effort& e) {
+std::vector<judged_place> judge(const world& scene, const aglow::ray_reader<tracer>& light, const effort& e) {
     std::vector<judged_place> places;
     for (std::size_t i = 0; i < e.judged * e.judged; ++i) {
         const aglow::vec2<T> film{static_cast<T>(i % e.judged) + T(0.5), static_cast<T>(i / e.judged) + T(0.5)};
@@ -96,8 +95,8 @@ void compare(const Frozen& cache, const std::vector<judged_place>& places, outco
 
 /// Fills caches of ever better accuracies until the number of records is as wanted, give or take 2 %.
 template <aglow::record_features Features>
-outcome run(const world& scene, const aglow::path_reader<world, host::light_set<T>>& light,
-            const std::vector<judged_place>& places, const effort& e, aglow::error_metric metric, double accuracy) {
+outcome run(const world& scene, const aglow::ray_reader<tracer>& light, const std::vector<judged_place>& places,
+            const effort& e, aglow::error_metric metric, double accuracy) {
     const auto eye = [&](const aglow::vec2<T>& film) { return scene.view().through(film, e.picture, e.picture); };
     const aglow::own_threads threads{};
     const auto where = cache_candidates(scene, eye, {.width = e.picture, .height = e.picture}, threads);
@@ -144,7 +143,7 @@ int benchmark(const effort& e) {
     const world scene{host::scenes::cornell_diffuse<T>()};
     // One bounce: what direct light makes of the walls.
     const tracer paths{scene, scene.lights(), {.most_bounces = 1}};
-    const aglow::path_reader<world, host::light_set<T>> light{paths};
+    const aglow::ray_reader<tracer> light{paths};
     const auto places = judge(scene, light, e);
     std::printf("Cornell box, one bounce of indirect light, %zu records of %u rays, judged at %zu places\n\n",
                 e.records, e.rays, places.size());
