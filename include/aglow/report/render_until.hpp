@@ -55,7 +55,7 @@ struct render_until_options {
     std::size_t most_probes = 2000;
     /// Work of one probe sample in the unit above; 0 where unknown, and then they are taken to cost nothing. A claim is
     /// made where picture and probes together are cheapest; a scout sharper than the one before takes at most a
-    /// tenth of the work so far.
+    /// twentieth of the work so far, or half of it where noise seems heavy-tailed.
     double probe_work = 0;
     /// Called after every look; returning false ends the work.
     callback<const until_progress&> progress{};
@@ -90,6 +90,7 @@ inline void require_until(const render_until_options& options) {
     require(options.most_noise >= options.least_noise, "most_noise: below least_noise");
     require(options.scout_probes >= 30, "scout_probes: fewer than 30");
     require(options.most_probes >= 200, "most_probes: fewer than 200");
+    require(options.probe_work >= 0 && is_finite(options.probe_work), "probe_work: negative or not finite");
 }
 
 /// The rule itself: what has been seen, and what to do next.
@@ -228,7 +229,7 @@ private:
     double certainty2_{1e-9};  ///< sum over looks of (error / its standard error)²
     double noise_{1};          ///< of the last scout's probes, as a share of the target
     double own_{0};            ///< mean size of that
-    bool slow_{false};         ///< whether it fell more slowly with their samples than a finite variance lets it
+    bool slow_{false};         ///< whether it seems heavy-tailed
     double samples_per_probe_{1};
 };
 
