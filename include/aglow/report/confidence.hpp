@@ -22,12 +22,6 @@ struct interval {
     [[nodiscard]] constexpr bool contains(double x) const { return low <= x && x <= high; }
 };
 
-[[nodiscard]] inline running_mean mean_of(std::span<const double> values) {
-    running_mean all;
-    for (const double x : values) { all.add(x); }
-    return all;
-}
-
 /// Student's two-sided interval for the mean behind `values`; infinitely wide below two values.
 [[nodiscard]] inline interval student_interval(const running_mean& values, double confidence) {
     constexpr double endless = std::numeric_limits<double>::infinity();

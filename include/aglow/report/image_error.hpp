@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -88,12 +87,6 @@ public:
     }
 
 private:
-    static running_mean mean_of(const std::vector<double>& values) {
-        running_mean all;
-        for (const double x : values) { all.add(x); }
-        return all;
-    }
-
     void add_quantiles(image_error& e) {
         std::sort(relative_.begin(), relative_.end());
         e.relative_q50 = sorted_quantile(relative_, 0.50);

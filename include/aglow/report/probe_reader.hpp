@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include <aglow/report/confidence.hpp>
 #include <aglow/report/image_view.hpp>
 #include <aglow/report/probe.hpp>
 #include <aglow/report/running_mean.hpp>

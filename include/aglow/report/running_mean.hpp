@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include <aglow/core/numbers.hpp>
 
@@ -64,5 +65,11 @@ private:
     double mean_{0};
     double spread_{0};
 };
+
+[[nodiscard]] inline running_mean mean_of(std::span<const double> values) {
+    running_mean all;
+    for (const double x : values) { all.add(x); }
+    return all;
+}
 
 }  // namespace aglow
