@@ -1,5 +1,6 @@
 #include <aglow/algorithms/fill_cache.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -158,6 +159,27 @@ TEST_CASE("fill_cache: where rays scatter, records get more of them and stay rig
     CHECK(more > 0.9 * wild);
     // Four standard errors of all rays together.
     CHECK(std::abs(light / rays / pi<double> / incoming.mean - 1) < 4 * incoming.scatter() / std::sqrt(rays));
+}
+
+TEST_CASE("fill_cache: rays for records that scatter are told of as they go, and can be stopped") {
+    const auto where = around(4000);
+    std::vector<double> told;
+    cache whole{1.732f};
+    const auto all = fill_cache(whole, where, flickering{}, {.rays = 100}, in_sequence{}, [&](const fill_progress& p) {
+        told.push_back(p.sharpened);
+        return true;
+    });
+    CHECK(told.front() == 0);
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    CHECK(std::count_if(told.begin(), told.end(), [](double x) { return x > 0 && x < 1; }) >= 1);
+    CHECK(told.back() == 1);
+    cache cut{1.732f};
+    const auto some = fill_cache(cut, where, flickering{}, {.rays = 100}, in_sequence{},
+                                 [](const fill_progress& p) { return p.sharpened == 0; });
+    CHECK(some.cancelled);
+    CHECK(some.uncovered == 0);
+    CHECK(cut.size() == whole.size());
+    CHECK(some.rays < all.rays);
 }
 
 TEST_CASE("fill_cache: in a furnace every place has pi times the radiance") {

@@ -130,8 +130,8 @@ template <Scene World, typename Eye, typename Reader, Executor Run, typename Fro
     const auto tell = report.phase(preparation_phase::records);
     irradiance_cache<spectrum_of<World>, scalar_of<World>, Frozen::record::features> cache{box, options.cache};
     filled = fill_cache(cache, places, reader, options.fill, run, [&](const fill_progress& now) {
-        const double left = static_cast<double>(now.uncovered) / static_cast<double>(now.candidates);
-        return !tell || tell(1 - left);
+        const double covered = 1 - static_cast<double>(now.uncovered) / static_cast<double>(now.candidates);
+        return !tell || tell(0.9 * covered + 0.1 * now.sharpened);  // not 1 while rays are still sent
     });
     if (tell && !filled.cancelled) { (void)tell(1); }
     frozen = cache.freeze(run);
@@ -168,8 +168,8 @@ public:
     /// Whether caustics can have maps of their own here; not where gloss is read from the cache, which then needs them.
     static constexpr bool has_maps = detail::may_have_caustics<World, Lights> && !Features.incident;
 
-    /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut the filling short: the picture
-    /// then gathers afresh where it finds no record.
+    /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut each phase short: where the
+    /// picture finds no record, it gathers afresh.
     template <typename Eye, Executor Run = in_sequence>
     irradiance_caching(const World& scene, const Lights& lights, const bounds<scalar>& scene_bounds, const Eye& eye,
                        const caching_options& options = {}, const Run& run = {},

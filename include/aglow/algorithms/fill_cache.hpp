@@ -11,7 +11,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -40,8 +39,9 @@ struct fill_cache_options {
     /// Rays of each hemisphere, about.
     std::uint32_t rays{350};
 
-    /// Where gather rays differ from their mean by more than so many times that mean, as where light comes through a
-    /// slit, the hemispheres get 4 or 16 times as many. Records must keep their noise. 0: the same for all.
+    /// How far so many gather rays may differ from their mean, in units of it. Where they differ more, as where light
+    /// comes through a slit, the hemispheres get 4 or 16 times as many, whichever is nearest to what that calls for.
+    /// Records must keep their noise. 0: the same for all.
     double scatter{0.9};
 
     /// Names the run of random numbers.
@@ -62,7 +62,8 @@ struct fill_cache_options {
 struct fill_progress {
     std::size_t records;     ///< inserted so far
     std::size_t candidates;  ///< in all
-    std::size_t uncovered;   ///< not covered when the present round began
+    std::size_t uncovered;   ///< not covered when the present round began; in the end, without cover
+    double sharpened{0};     ///< share of the rays done that go where those before scattered; they come last
 };
 
 /// What a fill pass did.
@@ -245,21 +246,21 @@ private:
     /// Gathers anew, with more rays, where those around scatter.
     template <typename Progress>
     void sharpen(Progress& progress) {
-        if (!(options_.scatter > 0)) { return; }
+        if (!(options_.scatter > 0) || result_.cancelled) { return; }
         std::vector<T> scatter(made_.size());
         for_each_block(run_, made_.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) { scatter[i] = cache_.scatter_around(made_[i].record); }
         });
-        for (const std::uint32_t times : {4u, 16u}) {
-            // Between the geometric means of the numbers of rays there are.
-            const T low = static_cast<T>(options_.scatter * std::sqrt(times / 2));
-            const T high = times < 16 ? 2 * low : std::numeric_limits<T>::infinity();
-            std::vector<made_record> chosen;
-            for (std::size_t i = 0; i < made_.size(); ++i) {
-                if (scatter[i] >= low && scatter[i] < high) { chosen.push_back(made_[i]); }
-            }
-            if (!chosen.empty()) { replace(chosen, times, progress); }
+        // Between the geometric means of the numbers of rays there are.
+        const T some = static_cast<T>(options_.scatter * std::sqrt(2.0));
+        std::vector<made_record> fourfold;
+        std::vector<made_record> sixteenfold;
+        for (std::size_t i = 0; i < made_.size(); ++i) {
+            if (scatter[i] >= some) { (scatter[i] < 2 * some ? fourfold : sixteenfold).push_back(made_[i]); }
         }
+        to_sharpen_ = 4 * fourfold.size() + 16 * sixteenfold.size();
+        replace(fourfold, 4, progress);
+        replace(sixteenfold, 16, progress);
     }
 
     template <typename Progress>
@@ -271,7 +272,9 @@ private:
             for (const made_record& m : some) { places.push_back(m.candidate); }
             const auto estimates = estimates_at(places, finer, times);
             for (std::size_t i = 0; i < some.size(); ++i) { (void)cache_.replace(some[i].record, estimates[i]); }
-            result_.cancelled = !progress(fill_progress{result_.records, candidates_.size(), 0});
+            sharpened_ += some.size() * times;
+            const double share = static_cast<double>(sharpened_) / static_cast<double>(to_sharpen_);
+            result_.cancelled = !progress(fill_progress{result_.records, candidates_.size(), pending_.size(), share});
         }
     }
 
@@ -283,6 +286,8 @@ private:
     irradiance_estimator<T> estimator_;
     std::vector<std::size_t> pending_;
     std::vector<made_record> made_;
+    std::size_t to_sharpen_{0};  ///< rays wanted for records gathered anew, in units of `options_.rays`
+    std::size_t sharpened_{0};
     fill_result result_;
 };
 
