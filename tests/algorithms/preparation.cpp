@@ -1,6 +1,7 @@
 #include <aglow/algorithms/preparation.hpp>
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <aglow/algorithms/cache_integrators.hpp>
@@ -9,6 +10,7 @@
 
 #include "support/catch.hpp"
 #include "support/furnace.hpp"
+#include "support/scenes.hpp"
 
 using namespace aglow;
 using testing::furnace_light;
@@ -25,6 +27,41 @@ const furnace room{.radius = 2, .albedo = 0.5f, .glow = 1};
 const lamp glow{.radius = 2, .glow = 1};
 const bounds<float> box{{-2, -2, -2}, {2, 2, 2}};
 constexpr float truth = 2;  // 1 / (1 - albedo)
+
+/// The furnace with a mirror for a side, which `eye` does not see; as bright as all else, since half of what it mirrors
+/// is lost.
+struct mirrored_wall : testing::furnace_wall<float, float> {
+    bool mirrors{false};
+
+    [[nodiscard]] lobe_set lobes() const { return mirrors ? lobe_set::specular_reflection : lambert::lobes(); }
+    [[nodiscard]] float evaluate(const vec3<float>& wo, const vec3<float>& wi, lobe_set asked) const {
+        return mirrors ? 0 : lambert::evaluate(wo, wi, asked);
+    }
+    [[nodiscard]] float pdf(const vec3<float>& wo, const vec3<float>& wi, lobe_set asked) const {
+        return mirrors ? 0 : lambert::pdf(wo, wi, asked);
+    }
+    template <Sampler R>
+    [[nodiscard]] std::optional<scatter_sample<float, float>> sample(const vec3<float>& wo, R& random,
+                                                                     lobe_set asked) const {
+        if (!mirrors) { return lambert::sample(wo, random, asked); }
+        if (!any(asked, lobe_set::specular_reflection)) { return std::nullopt; }
+        return scatter_sample<float, float>{normal * (2 * glm::dot(normal, wo)) - wo, albedo, 0,
+                                            lobe_set::specular_reflection};
+    }
+};
+
+struct mirrored_furnace {
+    static constexpr lobe_set possible_lobes = lobe_set::diffuse_reflection | lobe_set::specular_reflection;
+
+    [[nodiscard]] std::optional<mirrored_wall> intersect(const ray<float>& r) const {
+        const auto wall = room.intersect(r);
+        if (!wall) { return std::nullopt; }
+        return mirrored_wall{*wall, wall->normal.x > 0.8f};
+    }
+    [[nodiscard]] bool occluded(const vec3<float>&, const vec3<float>&) const { return false; }
+};
+
+const mirrored_furnace mirrored_room;
 
 ray<float> eye(const vec2<float>& film) {
     return {{0.1f, 0.2f, -0.3f}, glm::normalize(vec3<float>{film.x - 4, film.y - 4, 4})};
@@ -44,6 +81,12 @@ void for_each_integrator(const Use& use) {
     use("irradiance cache", std::vector{phase::places, phase::records}, [=](const auto& run, const auto& progress) {
         return irradiance_caching{room, glow, box, eye, caching, run, progress};
     });
+    use("irradiance cache beside caustics", std::vector{phase::photons, phase::places, phase::records},
+        [=](const auto& run, const auto& progress) {
+            caching_options options = caching;
+            options.caustics.photons.caustic = 20'000;
+            return irradiance_caching{mirrored_room, glow, box, eye, options, run, progress};
+        });
     use("gather cache", std::vector{phase::photons, phase::irradiance, phase::places, phase::records},
         [=](const auto& run, const auto& progress) {
             gather_caching_options options;
@@ -51,6 +94,12 @@ void for_each_integrator(const Use& use) {
             options.caching = caching;
             return gather_caching{room, glow, box, eye, options, run, progress};
         });
+}
+
+/// The map that most photons were wanted for.
+template <typename Maps>
+const auto& main_map(const Maps& maps) {
+    return maps.indirect.wanted > 0 ? maps.indirect : maps.caustic;
 }
 
 /// What a few rays see.
@@ -91,6 +140,29 @@ TEST_CASE("preparation: every phase is told from its beginning to its end, in or
     });
 }
 
+TEST_CASE("preparation: photons are a phase of a cache only where the scene can have caustics, and some are wanted") {
+    using scene_type = support::toy_scene<float, float>;
+    const scene_type scene{.rectangles = {{{-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, {0, 0, -1}, {.diffuse = 0.5f}}}};
+    const support::bulb<float> bulb{{0, 0, 0}, 1};
+    const auto phases_of = [&](lobe_set lobes, std::size_t caustic) {
+        scene_type stated = scene;
+        stated.lobes = lobes;
+        std::vector<phase> phases;
+        const caching_options options{.view = {.width = 8, .height = 8},
+                                      .caustics = {.photons = {.caustic = caustic, .pilot_paths = 64}}};
+        (void)irradiance_caching{stated, bulb, box, eye, options, in_sequence{}, [&](const preparation& p) {
+                                     if (phases.empty() || phases.back() != p.phase) { phases.push_back(p.phase); }
+                                     return true;
+                                 }};
+        return phases;
+    };
+    const std::vector with_photons{phase::photons, phase::places, phase::records};
+    const std::vector without{phase::places, phase::records};
+    CHECK(phases_of(lobe_set::all, 1000) == with_photons);
+    CHECK(phases_of(lobe_set::all, 0) == without);
+    CHECK(phases_of(lobe_set::diffuse, 1000) == without);
+}
+
 TEST_CASE("preparation: threads tell it one at a time, and no share falls") {
     for_each_integrator([](const char* name, const std::vector<phase>&, const auto& make) {
         CAPTURE(name);
@@ -128,9 +200,9 @@ TEST_CASE("preparation: a host that says no at once is asked once a phase, and g
         CHECK(asked == phases);
         const auto whole = make(in_sequence{}, preparation_progress{});
         if constexpr (requires { cut.maps(); }) {
-            CHECK(cut.maps().indirect.status == map_status::partly);
-            CHECK_FALSE(cut.maps().indirect.empty());
-            CHECK(cut.maps().indirect.size() < whole.maps().indirect.size() / 4);
+            CHECK(main_map(cut.maps()).status == map_status::partly);
+            CHECK_FALSE(main_map(cut.maps()).empty());
+            CHECK(main_map(cut.maps()).size() < main_map(whole.maps()).size() / 4);
         }
         if constexpr (requires { cut.points(); }) {
             CHECK_FALSE(cut.points().empty());
@@ -150,7 +222,7 @@ TEST_CASE("preparation: phases that are cut short in their midst leave the pictu
         const auto cut = make(in_sequence{}, [&](const preparation& p) { return p.share < 0.5; });
         double common = 0;
         if constexpr (requires { cut.maps(); }) {
-            const auto& map = cut.maps().indirect;
+            const auto& map = main_map(cut.maps());
             CHECK(map.status == map_status::partly);
             CHECK(map.size() > 20'000 / 3);
             CHECK(map.size() < 20'000 * 2 / 3);

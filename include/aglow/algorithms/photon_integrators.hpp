@@ -25,11 +25,19 @@ struct photon_mapping_options {
 
 namespace detail {
 
-/// Traces photons as a phase of a preparation.
+/// Whether any of the photons that are wanted can land in `scene`.
+template <typename World>
+[[nodiscard]] bool can_have(const World& scene, const photon_options& wanted) {
+    const lobe_set lobes = possible_lobes(scene);
+    const bool caustic = wanted.caustic > 0 && any(lobes, lobe_set::specular);
+    return any(lobes, lobe_set::smooth) && (caustic || wanted.direct > 0 || wanted.indirect > 0);
+}
+
+/// Traces photons as a phase of a preparation, where there is anything to trace.
 template <typename World, typename Lights, typename Run>
 [[nodiscard]] auto trace_photons(const World& scene, const Lights& lights, photon_options options, const Run& run,
                                  preparation_report& report) {
-    options.progress = report.phase(preparation_phase::photons, options.progress);
+    if (can_have(scene, options)) { options.progress = report.phase(preparation_phase::photons, options.progress); }
     return aglow::trace_photons(scene, lights, options, run);
 }
 
