@@ -6,20 +6,14 @@
 #include <aglow/core/random.hpp>
 #include <aglow/core/warp.hpp>
 
+#include "support/angle.hpp"
 #include "support/catch.hpp"
 
 namespace {
 
 using aglow::octahedral;
 using aglow::vec3;
-
-/// The angle between unit vectors, exact for small ones.
-template <typename T>
-double angle(const vec3<T>& a, const vec3<T>& b) {
-    const vec3<double> u(a);
-    const vec3<double> v(b);
-    return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
-}
+using support::angle;
 
 }  // namespace
 

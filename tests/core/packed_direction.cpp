@@ -1,12 +1,12 @@
 #include <aglow/core/packed_direction.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include <aglow/core/random.hpp>
 #include <aglow/core/warp.hpp>
 
+#include "support/angle.hpp"
 #include "support/catch.hpp"
 
 namespace {
@@ -20,9 +20,7 @@ double worst_angle() {
     double worst = 0;
     for (int i = 0; i < 500'000; ++i) {
         const vec3<T> v = aglow::uniform_sphere(random.next_2d());
-        const vec3<double> u(v);
-        const vec3<double> w(packed_direction<I>{v}.template direction<T>());
-        worst = std::max(worst, std::atan2(glm::length(glm::cross(u, w)), glm::dot(u, w)));
+        worst = std::max(worst, support::angle(v, packed_direction<I>{v}.template direction<T>()));
     }
     return worst;
 }
