@@ -16,9 +16,6 @@ struct tilt {
     T side;  ///< of the equator: 1 or -1
     T a;     ///< -1 / (side + normal.z)
 
-    tilt(const vec3<T>& n, T its_side, T its_a) : normal{n}, side{its_side}, a{its_a} {}
-    explicit tilt(const vec3<T>& n) : normal{n}, side{std::copysign(T(1), n.z)}, a{T(-1) / (side + n.z)} {}
-
     /// A vector of the world in the frame's coordinates.
     [[nodiscard]] vec3<T> to_local(const vec3<T>& v) const {
         const T along = normal.x * v.x + normal.y * v.y;

@@ -35,18 +35,8 @@ public:
 
     template <typename T>
     [[nodiscard]] vec3<T> direction() const {
-        return unfolded(folded<T>());
-    }
-
-    /// The place on the unfolded octahedron, in [-1, 1].
-    template <typename T>
-    [[nodiscard]] vec2<T> folded() const {
-        // Rounds so that the largest number of steps is one.
-        return {static_cast<T>(x_) * (T(1) / T(largest)), static_cast<T>(y_) * (T(1) / T(largest))};
-    }
-    /// The direction of such a place.
-    template <typename T>
-    [[nodiscard]] static vec3<T> unfolded(const vec2<T>& at) {
+        // The place on the unfolded octahedron, in [-1, 1]; rounds so that the largest number of steps is one.
+        const vec2<T> at{static_cast<T>(x_) * (T(1) / T(largest)), static_cast<T>(y_) * (T(1) / T(largest))};
         const T z = 1 - std::abs(at.x) - std::abs(at.y);
         const T fold = z < 0 ? -z : T(0);
         const T x = at.x - sign(at.x) * fold;
