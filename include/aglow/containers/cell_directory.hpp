@@ -30,22 +30,18 @@ public:
     template <typename Meets>
     cell_directory(const std::vector<bounds<T>>& boxes, const Meets& meets);
 
-    /// Calls `visitor(numbers, count)` for lists that together hold each box that contains `point` once, and maybe
-    /// others.
-    template <typename Visitor>
-    void visit_near(const vec3<T>& point, Visitor&& visitor) const {
-        visit_lists(list_near(point), visitor);
-    }
-
-    /// The same in three steps, each of which asks for the memory that the next one reads.
+    /// Asks for the memory that `list_near` reads.
     void expect(const vec3<T>& point) const {
         if (all_.contains(point)) { simd::prefetch(&starts_[start_of(cell_of(point))]); }
     }
+    /// Where the lists begin that together hold each box that contains `point` once, and maybe others; 0 for none. Asks
+    /// for the memory of the first.
     [[nodiscard]] std::uint32_t list_near(const vec3<T>& point) const {
         const std::uint32_t list = all_.contains(point) ? list_at(cell_of(point)) : 0;
         simd::prefetch(lists_.data() + list);
         return list;
     }
+    /// Calls `visitor(numbers, count)` for the lists from `list` on.
     template <typename Visitor>
     void visit_lists(std::uint32_t list, Visitor&& visitor) const {
         for (; list != 0; list = lists_[list]) { visitor(lists_.data() + list + 2, lists_[list + 1]); }

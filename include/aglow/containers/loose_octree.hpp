@@ -172,7 +172,7 @@ private:
     }
 
     [[nodiscard]] bool belongs_outside(const root* top, const vec3<T>& centre, T radius) const {
-        if (max_abs(centre) >= farthest) { return true; }
+        if (is_far(centre)) { return true; }
         if (!top || full(outside_, blocks_outside)) { return false; }
         return (max_abs(centre - top->middle) + radius) / top->half > T(1 << patient_doublings);
     }

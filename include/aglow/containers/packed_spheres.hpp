@@ -46,7 +46,7 @@ public:
 
     template <bool D>
     void search(const covering_question<T>& question, sphere_hits<T, D>& found) const {
-        if (directory_.longest() > crowded) { return search_trees(question, found); }
+        if (!is_listed()) { return search_trees(question, found); }
         ask_lists(directory_.list_near(question.point), question, found);
     }
 
@@ -57,13 +57,13 @@ public:
         constexpr std::size_t some = 16;
         std::array<std::uint32_t, some> lists;
         for (std::size_t i = 0; i < count; ++i) {
-            if (i % some == 0) { expect(i, std::min(some, count - i), point_at, lists); }
+            if (is_listed() && i % some == 0) { expect(i, std::min(some, count - i), point_at, lists); }
             sphere_hits<T> hits;
             const covering_question<T> question{point_at(i)};
-            if (directory_.longest() > crowded) {
-                search_trees(question, hits);
-            } else {
+            if (is_listed()) {
                 ask_lists(lists[i % some], question, hits);
+            } else {
+                search_trees(question, hits);
             }
             found(i, hits.items());
         }
@@ -113,6 +113,9 @@ private:
     };
 
     // ---- search -----------------------------------------------------------------------------------------------------
+
+    // Whether the lists of the directory are short enough to be asked for what covers a point.
+    [[nodiscard]] bool is_listed() const { return directory_.longest() <= crowded; }
 
     template <bool D>
     void ask_lists(std::uint32_t list, const covering_question<T>& question, sphere_hits<T, D>& found) const {
