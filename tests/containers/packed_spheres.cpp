@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <aglow/core/random.hpp>
@@ -95,6 +96,28 @@ TEST_CASE("packed_spheres: a thousand spheres at one place are found in few byte
     const packed_spheres<float> index{spheres};
     CHECK(covering(index, {1, 2, 3}) == brute_force<float>(spheres, {1, 2, 3}));
     CHECK(index.bytes() < 100000);
+}
+
+TEST_CASE("packed_spheres: places asked about in step get what brute force finds for each, in a crowd too") {
+    auto crowd = random_spheres<float>(4000, 1, 6);
+    for (auto& s : crowd) { s = {s.centre * 0.001f, 0.25f, s.item}; }
+    for (const auto& spheres : {random_spheres<float>(700, 1, 6), crowd}) {
+        const packed_spheres<float> index{spheres};
+        random_sampler<float> random{7};
+        std::vector<vec3<float>> places(100);
+        for (auto& p : places) { p = {random.next_1d(), random.next_1d(), random.next_1d()}; }
+        std::size_t next = 0;
+        int wrong = 0;
+        index.search_each(
+            places.size(), [&](std::size_t i) { return places[i]; },
+            [&](std::size_t i, std::span<const std::uint32_t> found) {
+                std::vector<std::uint32_t> items(found.begin(), found.end());
+                std::sort(items.begin(), items.end());
+                wrong += i != next++ || items != brute_force(spheres, places[i]);
+            });
+        CHECK(next == places.size());
+        CHECK(wrong == 0);
+    }
 }
 
 TEST_CASE("packed_spheres: numbered anew, neighbours have near numbers and answers are the same spheres") {
