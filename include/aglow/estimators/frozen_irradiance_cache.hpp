@@ -59,14 +59,11 @@ public:
         });
     }
 
-    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
-    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal) const {
-        no_counters nothing;
-        return lookup(point, normal, nothing);
-    }
-    template <typename Counters>
+    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable. `counters` hears what
+    /// became of each record.
+    template <typename Counters = no_counters>
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
-                                                 Counters& counters) const {
+                                                 Counters&& counters = {}) const {
         sphere_hits<T> near;
         reaches_.search(covering_question<T>{point}, near);
         return blend(point, normal, near.items(), counters);

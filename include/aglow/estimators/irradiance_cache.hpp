@@ -86,14 +86,11 @@ public:
     explicit irradiance_cache(const bounds<T>& scene, const irradiance_cache_options& options = {})
         : irradiance_cache{scene.radius(), options} {}
 
-    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable.
-    [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal) const {
-        no_counters nothing;
-        return lookup(point, normal, nothing);
-    }
-    template <typename Counters>
+    /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable. `counters` hears what
+    /// became of each record.
+    template <typename Counters = no_counters>
     [[nodiscard]] irradiance_answer<S, T> lookup(const vec3<T>& point, const vec3<T>& normal,
-                                                 Counters& counters) const {
+                                                 Counters&& counters = {}) const {
         record_blend<S, T> blend{point, normal, limits_};
         struct near_record {
             const irradiance_record<S, T, Features>& record;
