@@ -47,6 +47,7 @@
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_median.hpp>
 #include <aglow/containers/kd_nearest_one.hpp>
+#include <aglow/containers/kd_probe.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/containers/kd_select.hpp>
 #include <aglow/containers/kd_tree.hpp>

@@ -12,6 +12,7 @@
 #include <aglow/containers/kd_halve.hpp>
 #include <aglow/containers/kd_layout.hpp>
 #include <aglow/containers/kd_nearest_one.hpp>
+#include <aglow/containers/kd_probe.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/core/simd_best.hpp>
 

@@ -6,6 +6,7 @@
 
 #include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_probe.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/core/simd.hpp>
 

@@ -25,6 +25,7 @@
 #include <aglow/containers/kd_cloud.hpp>
 #include <aglow/containers/kd_kernels.hpp>
 #include <aglow/containers/kd_layout.hpp>
+#include <aglow/containers/kd_probe.hpp>
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/core/bounds.hpp>
 #include <aglow/core/numbers.hpp>
