@@ -87,6 +87,7 @@
 // algorithms: light on its way
 #include <aglow/algorithms/cache_candidates.hpp>
 #include <aglow/algorithms/cache_integrators.hpp>
+#include <aglow/algorithms/cache_layer.hpp>
 #include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/energy_ledger.hpp>
