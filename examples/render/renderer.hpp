@@ -53,6 +53,7 @@ public:
 
     [[nodiscard]] render_result render() {
         if (options_.reference) { return reference(); }
+        check_view();
         for (const auto& o : aglow::plan_for(scene_).left_out) {
             result_.notes.push_back("left out: " + o.part + ", " + o.why);
         }
@@ -78,6 +79,20 @@ private:
 
     [[nodiscard]] auto eye() const {
         return [this](const vec2<T>& film) { return view_.through(film, options_.width, options_.height); };
+    }
+
+    /// Refuses what the method has not, before anything is made.
+    void check_view() const {
+        const bool by_cache = options_.how == method::irradiance_cache;
+        const bool maps =
+            by_cache ? aglow::irradiance_caching<World, light_set<T>>::has_maps : options_.how != method::path;
+        if (!maps && (options_.show == view::photons || options_.show == view::caustic)) {
+            throw usage_error(
+                "--view photons and caustic need photons: path has none, irradiance-cache only beside mirrors");
+        }
+        if (options_.show == view::records && !by_cache && options_.how != method::gather_cache) {
+            throw usage_error("--view records needs a method with an irradiance cache");
+        }
     }
 
     // ---- settings ---------------------------------------------------------------------------------------------------
@@ -117,8 +132,8 @@ private:
         }
         c.fill.rays = options_.gather_rays.value_or(c.fill.rays);
         c.cache.reach.accuracy = options_.accuracy.value_or(c.cache.reach.accuracy);
-        c.caustics.photons.caustic = options_.caustic_photons.value_or(c.caustics.photons.caustic);
-        c.caustics.photons.seed = options_.seed;
+        c.caustics.photons = photons(c.caustics.photons);
+        c.caustics.photons.direct = c.caustics.photons.indirect = 0;  // its rays find such light without photons
         c.caustics.density = density();
         return c;
     }
@@ -381,7 +396,6 @@ private:
 
     [[nodiscard]] const picture& caustic(const maps_type* maps) {
         if (caustic_) { return *caustic_; }
-        if (!maps) { throw usage_error("--view caustic needs a method with photon maps"); }
         const aglow::map_layer<S, T> layer{maps->caustic, density()};
         return caustic_.emplace(minus(expose("caustics", aglow::layered_integrator{scene_, lights_, layer}), glow()));
     }
@@ -399,7 +413,6 @@ private:
     }
 
     [[nodiscard]] picture photons_seen(const maps_type* maps) {
-        if (!maps) { throw usage_error("--view photons needs a method with photon maps"); }
         picture image{options_.width, options_.height};
         for (const auto* map : {&maps->direct, &maps->caustic, &maps->indirect}) {
             add_photons(image, scene_, view_, *map);
@@ -408,7 +421,6 @@ private:
     }
 
     [[nodiscard]] picture records_seen(picture image, const cache_type* cache) {
-        if (!cache) { throw usage_error("--view records needs a method with an irradiance cache"); }
         for (S& pixel : image.pixels) { pixel *= 0.4f; }
         paint_records(image, scene_, view_, *cache);
         return image;
