@@ -116,6 +116,7 @@
 
 // report: how good is it
 #include <aglow/report/audit.hpp>
+#include <aglow/report/audit_draw.hpp>
 #include <aglow/report/audit_pixels.hpp>
 #include <aglow/report/audit_result.hpp>
 #include <aglow/report/audit_sample.hpp>

@@ -1,4 +1,4 @@
-// The probes of one audit: which pixels, how many samples, and the plain numbers made of them.
+// The probes of one audit, and the plain numbers made of them.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <aglow/core/parallel.hpp>
-#include <aglow/core/random.hpp>
+#include <aglow/report/audit_draw.hpp>
 #include <aglow/report/audit_pixels.hpp>
 #include <aglow/report/audit_result.hpp>
 #include <aglow/report/conformal.hpp>
@@ -30,33 +30,34 @@ public:
           options_{options},
           mean_{ground.mean},
           of_{picture_.image, ground.floor},
-          shares_{ground.shares} {}
+          shares_{ground.shares},
+          draw_{ground, options} {}
 
     /// A pilot tells how many samples a probe needs; then the probes, all of them anew with more samples while their
     /// noise seems heavy-tailed, and more for classes that got too few.
     template <Probe P, Executor E>
     void draw(const P& probe, const E& run) {
-        per_batch_ = pilot(probe, run);
-        uniform_ = static_cast<std::size_t>(shares_.uniform_part() * static_cast<double>(options_.probes));
-        const std::vector<std::size_t> pixels = main_pixels();
-        std::vector<std::size_t> batches = allotted(probe, run, pixels, part_main_spread);
-        records_ = draw_all(probe, run, pixels, batches, part_main);
+        draw_.pilot(probe, run);
+        const std::vector<std::size_t> pixels = draw_.main_pixels();
+        std::vector<std::size_t> batches = draw_.allotted(probe, run, pixels, audit_part::main_spread);
+        records_ = draw_.all(probe, run, pixels, batches, audit_part::main_probes);
         for (std::uint64_t again = 1; worth_drawing_anew(); ++again) {
-            per_batch_ *= 4;
+            draw_.quadruple();
             for (std::size_t& b : batches) { b *= 4; }
-            records_ = draw_all(probe, run, pixels, batches, part_anew + again);
+            records_ = draw_.all(probe, run, pixels, batches, audit_part::anew + again);
         }
         slow_ = seems_heavy();
-        const std::vector<std::size_t> rare = pixels_of_rare_classes();
-        extra_ = draw_all(probe, run, rare, allotted(probe, run, rare, part_extra_spread), part_extra);
+        const std::vector<std::size_t> rare = draw_.pixels_of_rare_classes();
+        extra_ = draw_.all(probe, run, rare, draw_.allotted(probe, run, rare, audit_part::extra_spread),
+                           audit_part::extra_probes);
     }
 
     [[nodiscard]] double mean() const { return mean_; }
     [[nodiscard]] double dark_floor() const { return of_.floor; }
     [[nodiscard]] std::size_t probes() const { return records_.size() + extra_.size(); }
-    [[nodiscard]] std::size_t samples_per_probe() const { return per_batch_ * probe_batches; }
-    [[nodiscard]] std::size_t samples() const { return samples_; }
-    [[nodiscard]] std::size_t broken() const { return broken_; }
+    [[nodiscard]] std::size_t samples_per_probe() const { return draw_.samples_per_batch() * probe_batches; }
+    [[nodiscard]] std::size_t samples() const { return draw_.samples(); }
+    [[nodiscard]] std::size_t broken() const { return draw_.broken(); }
 
     /// Whether the noise falls so slowly that its variance may be infinite, and no bound is known that says otherwise.
     [[nodiscard]] bool heavy_tailed() const { return slow_ && !options_.sample_bound; }
@@ -103,7 +104,7 @@ public:
     /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in: never too small on
     /// average.
     [[nodiscard]] std::vector<double> plain_errors() const {
-        return each(uniform_, [&](const probe_record& r) { return of_.error(r, every_batch); });
+        return each(draw_.uniform(), [&](const probe_record& r) { return of_.error(r, every_batch); });
     }
 
     /// Weighted B−U of each probed pixel, of the mean of its channels.
@@ -137,7 +138,7 @@ public:
             all.push_back(&r);
             classes.push_back(class_of(picture_, r.pixel));
         };
-        std::for_each(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(uniform_), add);
+        std::for_each(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(draw_.uniform()), add);
         std::for_each(extra_.begin(), extra_.end(), add);
         std::vector<class_scale> found;
         class_lists{classes, options_.class_probes}.for_each(
@@ -148,12 +149,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t pilot_probes = 32;
-    static constexpr std::uint64_t part_main = 0;  // parts of the audit's random numbers; pilots are 2, 3, ...
-    static constexpr std::uint64_t part_extra = 1;
-    static constexpr std::uint64_t part_main_spread = 500;
-    static constexpr std::uint64_t part_extra_spread = 501;
-    static constexpr std::uint64_t part_anew = 1000;
     static constexpr double heavy = 0.6;  // tail index that a finite variance seldom shows
 
     [[nodiscard]] bool seems_heavy() const { return tail_index() > heavy; }
@@ -173,10 +168,7 @@ private:
     }
 
     [[nodiscard]] bool worth_drawing_anew() const {
-        const double most = options_.patience / square(options_.noise * options_.target);
-        const bool patient = 4 * static_cast<double>(samples_per_probe()) <= most;
-        const bool affordable = 4 * static_cast<double>(per_batch_) <= affordable_batch();
-        if (!patient || !affordable || !seems_heavy()) { return false; }
+        if (!draw_.may_quadruple() || !seems_heavy()) { return false; }
         const double jump = largest_jump([this](const probe_record& r) { return of_.darkest(r); });
         return reach(options_.confidence) * jump > 0.1 * options_.target;
     }
@@ -208,130 +200,13 @@ private:
         return std::sqrt(std::max(1.75 * whole * whole - 0.75 * halves2, 0.25 * whole * whole));
     }
 
-    [[nodiscard]] path_key key(std::uint64_t part, std::size_t i) const {
-        return {options_.seed, mix(options_.stream, part), static_cast<std::uint64_t>(i)};
-    }
-
-    /// A number in [0, 1) that belongs to probe `i` of `part`.
-    [[nodiscard]] double drawn_number(std::uint64_t part, std::size_t i) const {
-        return unit_interval<double>(mix(key(part, i), ~0u, purpose::audit));
-    }
-
-    [[nodiscard]] std::size_t drawn(std::uint64_t part, std::size_t i, std::size_t count) const {
-        return std::min(count - 1, static_cast<std::size_t>(drawn_number(part, i) * static_cast<double>(count)));
-    }
-
-    [[nodiscard]] std::vector<std::size_t> uniform_pixels(std::size_t count, std::uint64_t part) const {
-        std::vector<std::size_t> pixels(count);
-        for (std::size_t i = 0; i < count; ++i) { pixels[i] = drawn(part, i, picture_.image.pixels()); }
-        return pixels;
-    }
-
-    /// Uniform ones first, then those drawn where errors are feared.
-    [[nodiscard]] std::vector<std::size_t> main_pixels() const {
-        std::vector<std::size_t> pixels = uniform_pixels(options_.probes, part_main);
-        for (std::size_t i = uniform_; i < pixels.size(); ++i) {
-            pixels[i] = shares_.pixel_at(drawn_number(part_main, i));
-        }
-        return pixels;
-    }
-
-    /// Further pixels of classes that the uniform draw hit too seldom.
-    [[nodiscard]] std::vector<std::size_t> pixels_of_rare_classes() const {
-        std::vector<std::size_t> pixels;
-        if (picture_.classes.empty()) { return pixels; }
-        std::vector<class_list> hits;
-        for (std::size_t i = 0; i < uniform_; ++i) {
-            members_of(hits, picture_.classes[records_[i].pixel]).push_back(i);
-        }
-        std::vector<class_list> members;
-        for (std::size_t i = 0; i < picture_.classes.size(); ++i) {
-            const std::uint32_t id = picture_.classes[i];
-            if (members_of(hits, id).size() < options_.class_probes) { members_of(members, id).push_back(i); }
-        }
-        for (const auto& [id, own] : members) {
-            for (std::size_t k = members_of(hits, id).size(); k < options_.class_probes; ++k) {
-                pixels.push_back(own[drawn(part_extra, pixels.size(), own.size())]);
-            }
-        }
-        return pixels;
-    }
-
-    /// Draws the probe of each pixel with its own number of samples in a batch, or with that of all.
-    template <Probe P, Executor E>
-    [[nodiscard]] std::vector<probe_record> draw_all(const P& probe, const E& run,
-                                                     const std::vector<std::size_t>& pixels,
-                                                     const std::vector<std::size_t>& batches, std::uint64_t part) {
-        std::vector<probe_record> records(pixels.size());
-        run(pixels.size(), [&](std::size_t i) {
-            records[i] = draw_probe(probe, pixels[i], picture_.image.channels, batches[i], key(part, i));
-        });
-        for (const probe_record& r : records) {
-            samples_ += r.samples;
-            broken_ += r.broken;
-        }
-        return records;
-    }
-
-    /// Samples per batch of each probe, `per_batch_` on average: most where the noise is largest beside the light, as
-    /// Neyman (1934) shares a sample among strata. A look of its own tells, so that the probes stay unbiased.
-    template <Probe P, Executor E>
-    [[nodiscard]] std::vector<std::size_t> allotted(const P& probe, const E& run,
-                                                    const std::vector<std::size_t>& pixels, std::uint64_t part) {
-        std::vector<std::size_t> batches(pixels.size(), per_batch_);
-        if (per_batch_ < 8) { return batches; }
-        const std::vector<std::size_t> few(pixels.size(), per_batch_ / 8);
-        std::vector<double> spreads;
-        for (const probe_record& r : draw_all(probe, run, pixels, few, part)) { spreads.push_back(of_.spread(r)); }
-        const double mean = mean_of(spreads).mean();
-        if (!(mean > 0)) { return batches; }
-        for (std::size_t i = 0; i < batches.size(); ++i) {
-            // What few samples say is not believed to the last: a quarter is dealt out evenly.
-            const double share = 0.25 + 0.75 * std::min(spreads[i] / mean, 16.0);
-            batches[i] = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(per_batch_)));
-        }
-        return batches;
-    }
-
-    /// Samples per batch for the wanted noise. A few single samples say little of a skewed noise, so the pilot is
-    /// repeated with larger batches until these are within a factor 8 of what they call for.
-    template <Probe P, Executor E>
-    [[nodiscard]] std::size_t pilot(const P& probe, const E& run) {
-        std::size_t batch = 1;
-        for (std::uint64_t round = 2;; ++round) {
-            const std::vector<std::size_t> batches(pilot_probes, batch);
-            const double wanted =
-                wanted_batch(draw_all(probe, run, uniform_pixels(pilot_probes, round), batches, round), batch);
-            const double most = affordable_batch();
-            const double next = std::clamp(std::ceil(std::min(wanted, most)), 1.0, 1e9);
-            if (wanted <= 8 * static_cast<double>(batch) || next < wanted) { return static_cast<std::size_t>(next); }
-            batch = static_cast<std::size_t>(std::ceil(next / 4));
-        }
-    }
-
-    /// Samples per batch that give a probe the wanted relative standard error, judged by a pilot of batches of `batch`.
-    [[nodiscard]] double wanted_batch(const std::vector<probe_record>& pilots, std::size_t batch) const {
-        running_mean spread;
-        for (const probe_record& r : pilots) { spread.add(of_.spread(r)); }
-        return static_cast<double>(batch) / probe_batches * square(spread.mean() / (options_.noise * options_.target));
-    }
-
-    /// What the budget allows, the look that shares it out included.
-    [[nodiscard]] double affordable_batch() const {
-        const double left = static_cast<double>(options_.budget) - static_cast<double>(samples_);
-        return std::floor(left / (1.125 * static_cast<double>(options_.probes * probe_batches)));
-    }
-
     audited_picture<T> picture_;
     audit_options options_;
     double mean_;
     probe_reader<T> of_;
     const pixel_shares& shares_;
-    std::size_t uniform_{0};
-    std::size_t per_batch_{1};
+    audit_draw<T> draw_;
     bool slow_{false};
-    std::size_t samples_{0};
-    std::size_t broken_{0};
     std::vector<probe_record> records_{};
     std::vector<probe_record> extra_{};
 };
