@@ -182,6 +182,19 @@ TEST_CASE("fill_cache: rays for records that scatter are told of as they go, and
     CHECK(some.rays < all.rays);
 }
 
+TEST_CASE("fill_cache: where rays scatter, records that have enough of them get no more") {
+    const flickering incoming{.chance = 0.25};
+    const auto rays = [&](std::uint32_t each, double noise) {
+        cache c{1.732f};
+        const fill_result filled =
+            fill_cache(c, around(300), incoming, {.rays = each, .noise = noise, .minimum_weight = 0.1});
+        return static_cast<double>(filled.rays) / static_cast<double>(filled.records);
+    };
+    CHECK(rays(100, 0.048) > 200);
+    CHECK(rays(2500, 0.048) < 2600);
+    CHECK(rays(2500, 0) > 5000);
+}
+
 TEST_CASE("fill_cache: in a furnace every place has pi times the radiance") {
     glow_of incoming;
     incoming.room.glow.fill({1, 1, 1});

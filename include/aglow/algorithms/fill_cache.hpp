@@ -44,6 +44,9 @@ struct fill_cache_options {
     /// Records must keep their noise. 0: the same for all.
     double scatter{0.9};
 
+    /// A record whose noise, relative to its light, is below this has rays enough, however they scatter.
+    double noise{0.048};
+
     /// Names the run of random numbers.
     std::uint64_t seed{0};
 
@@ -252,7 +255,8 @@ private:
             for (std::size_t i = first; i < last; ++i) { scatter[i] = cache_.scatter_around(made_[i].record); }
         });
         // Between the geometric means of the numbers of rays there are.
-        const T some = static_cast<T>(options_.scatter * std::sqrt(2.0));
+        const double enough = std::max(options_.scatter, options_.noise * std::sqrt(options_.rays));
+        const T some = static_cast<T>(enough * std::sqrt(2.0));
         std::vector<made_record> fourfold;
         std::vector<made_record> sixteenfold;
         for (std::size_t i = 0; i < made_.size(); ++i) {
@@ -295,6 +299,7 @@ inline void check(const fill_cache_options& o) {
     expect_setting(o.rays > 0, "rays", o.rays);
     expect_setting(is_finite(o.minimum_weight) && o.minimum_weight >= 0, "minimum_weight", o.minimum_weight);
     expect_setting(is_finite(o.scatter) && o.scatter >= 0, "scatter", o.scatter);
+    expect_setting(is_finite(o.noise) && o.noise >= 0, "noise", o.noise);
     expect_setting(o.refinement > 0 && o.refinement <= 0.95, "refinement", o.refinement);
 }
 
