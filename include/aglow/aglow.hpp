@@ -54,6 +54,7 @@
 #include <aglow/containers/loose_octree.hpp>
 #include <aglow/containers/octree.hpp>
 #include <aglow/containers/packed_spheres.hpp>
+#include <aglow/containers/sphere_order.hpp>
 #include <aglow/containers/sphere_search.hpp>
 #include <aglow/containers/stable_array.hpp>
 

@@ -7,17 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include <aglow/containers/cell_directory.hpp>
+#include <aglow/containers/sphere_order.hpp>
 #include <aglow/containers/sphere_search.hpp>
 #include <aglow/core/bounds.hpp>
-#include <aglow/core/numbers.hpp>
 #include <aglow/core/simd.hpp>
 #include <aglow/core/vec.hpp>
 
@@ -31,7 +29,9 @@ public:
     packed_spheres() = default;
     explicit packed_spheres(std::vector<stored_sphere<T>> spheres) : size_{spheres.size()} {
         std::vector<bounds<T>> boxes;
-        for (const std::span<stored_sphere<T>> alike : by_size(spheres)) { roots_.push_back(plant(alike, boxes)); }
+        for (const std::span<stored_sphere<T>> alike : detail::by_size(spheres)) {
+            roots_.push_back(plant(alike, boxes));
+        }
         blocks_.shrink_to_fit();
         nodes_.shrink_to_fit();
         directory_ =
@@ -203,50 +203,9 @@ private:
 
     // ---- build ------------------------------------------------------------------------------------------------------
 
-    // The spheres in groups of like size, small ones first. Two groups are one where a search then meets fewer blocks.
-    [[nodiscard]] static std::vector<std::span<sphere>> by_size(std::vector<sphere>& spheres) {
-        std::vector<std::span<sphere>> groups;
-        std::sort(spheres.begin(), spheres.end(), [](const sphere& a, const sphere& b) {
-            return a.limit2 < b.limit2 || (a.limit2 == b.limit2 && a.item < b.item);
-        });
-        const T size = extent_of(spheres);
-        for (std::size_t first = 0; first < spheres.size();) {
-            std::size_t last = first;
-            const int octave = std::ilogb(spheres[first].limit2);
-            while (last < spheres.size() && std::ilogb(spheres[last].limit2) == octave) { ++last; }
-            groups.emplace_back(spheres.data() + first, last - first);
-            while (groups.size() > 1 && join_last(groups, size)) {}
-            first = last;
-        }
-        return groups;
-    }
-
-    [[nodiscard]] static T extent_of(const std::vector<sphere>& spheres) {
-        bounds<T> all;
-        for (const sphere& s : spheres) { all.add(s.centre); }
-        return all.diagonal();
-    }
-
-    static bool join_last(std::vector<std::span<sphere>>& groups, T size) {
-        const std::span<sphere> large = groups.back();
-        const std::span<sphere> small = groups[groups.size() - 2];
-        const std::span<sphere> both{small.data(), small.size() + large.size()};
-        if (blocks_met(both, size) > blocks_met(small, size) + blocks_met(large, size)) { return false; }
-        groups.pop_back();
-        groups.back() = both;
-        return true;
-    }
-
-    // About how many blocks of sixteen a search meets, were the centres spread over a square of half that diagonal.
-    [[nodiscard]] static T blocks_met(std::span<const sphere> spheres, T size) {
-        const T side = size / 2 * std::sqrt(T(lanes) / T(spheres.size()));
-        if (!(side > 0)) { return T(spheres.size()); }
-        return square(1 + 2 * spheres.back().radius() / side);
-    }
-
     // Builds the tree over `alike`; returns its root.
     [[nodiscard]] std::uint32_t plant(std::span<sphere> alike, std::vector<bounds<T>>& all_boxes) {
-        arrange(alike);
+        detail::arrange(alike);
         const auto first_block = static_cast<std::uint32_t>(blocks_.size());
         std::vector<bounds<T>> boxes;
         for (std::size_t i = 0; i < alike.size(); i += lanes) {
@@ -261,27 +220,6 @@ private:
             first = next;
         }
     }
-
-    // Orders spheres so that sixteen, 256, 4096 … in a row are neighbours: halves along the longest side, at such
-    // counts.
-    static void arrange(std::span<sphere> spheres) {
-        if (spheres.size() <= lanes) { return; }
-        std::size_t unit = lanes;
-        while (unit * lanes <= spheres.size() / 2) { unit *= lanes; }
-        const std::size_t half = (spheres.size() / 2 + unit / 2) / unit * unit;
-        bounds<T> box;
-        for (const sphere& s : spheres) { box.add(s.centre); }
-        const int axis = longest(box.extent());
-        std::nth_element(spheres.begin(), spheres.begin() + static_cast<std::ptrdiff_t>(half), spheres.end(),
-                         [axis](const sphere& a, const sphere& b) {
-                             return a.centre[axis] < b.centre[axis] ||
-                                    (a.centre[axis] == b.centre[axis] && a.item < b.item);
-                         });
-        arrange(spheres.first(half));
-        arrange(spheres.subspan(half));
-    }
-
-    [[nodiscard]] static int longest(const vec3<T>& e) { return e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2; }
 
     // Whether a sphere of `b` reaches into `cell`.
     [[nodiscard]] static bool meets(const block& b, const bounds<T>& cell) {
