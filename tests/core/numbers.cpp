@@ -35,21 +35,25 @@ TEMPLATE_TEST_CASE("numbers: pi is the nearest there is", "", float, double) {
     CHECK(aglow::square(T(-3)) == 9);
 }
 
-TEMPLATE_TEST_CASE("numbers: inverse_root is right within two ulp at any scale, and exact for powers of four", "",
-                   float, double) {
+TEMPLATE_TEST_CASE(
+    "numbers: inverse_root is right within two ulp at any scale and exact for powers of four, root within three", "",
+    float, double) {
     using T = TestType;
     const long double ulp = static_cast<long double>(std::numeric_limits<T>::epsilon());
-    long double worst = 0;
+    long double worst = 0, worst_root = 0;
     for (int k = -90; k <= 90; ++k) {
         for (int i = 0; i < 300; ++i) {
             const T x = std::ldexp(T(1) + T(3) * static_cast<T>(i) / T(300), 2 * (k / 2));
             if (!(x >= std::numeric_limits<T>::min())) { continue; }
             const long double right = 1 / std::sqrt(static_cast<long double>(x));
             worst = std::max(worst, std::abs(static_cast<long double>(aglow::inverse_root(x)) / right - 1));
+            worst_root = std::max(worst_root, std::abs(static_cast<long double>(aglow::root(x)) * right - 1));
         }
         CHECK(aglow::inverse_root(std::ldexp(T(1), 2 * (k / 2))) == std::ldexp(T(1), -(k / 2)));
     }
     CHECK(worst <= 2 * ulp);
+    CHECK(worst_root <= 3 * ulp);
+    CHECK(aglow::root(T(0)) == 0);
     // What is left of nothing is a number.
     CHECK(aglow::is_finite(aglow::inverse_root(T(0))));
     CHECK(T(0) * aglow::inverse_root(T(0)) == 0);

@@ -47,7 +47,7 @@ template <std::floating_point T>
     return y + y * (T(0.5) * (1 - a * y * y));
 }
 
-/// sqrt(x) within three ulp for x >= 0, with no errno to set; 0 for 0.
+/// sqrt(x) within three ulp, with no errno to set; too small where `inverse_root` is, and 0 for 0. Expects `x` >= 0.
 template <std::floating_point T>
 [[nodiscard]] constexpr T root(T x) {
     return x * inverse_root(x);
