@@ -6,6 +6,9 @@
 // So far a grid gains at most a quarter, where photons lie evenly and few are within, and takes twice as long in
 // crowds.
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <string>

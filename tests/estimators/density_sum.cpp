@@ -1,6 +1,9 @@
 #include <aglow/estimators/density_sum.hpp>
 
-#include <cmath>
+#include <initializer_list>
+
+#include <aglow/core/numbers.hpp>
+#include <aglow/estimators/kernel.hpp>
 
 #include "support/catch.hpp"
 

@@ -1,7 +1,9 @@
 #include <aglow/estimators/record_lanes.hpp>
 
 #include <cmath>
+#include <limits>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <aglow/core/random.hpp>
