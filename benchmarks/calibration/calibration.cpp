@@ -81,7 +81,7 @@ tally calibrate(const known_scene& scene, const judged_picture& picture) {
     tally result;
     const auto probe = [&](std::size_t pixel, std::uint64_t seed, std::size_t) { return scene.look(pixel, seed); };
     aglow::audit_options options{.probes = 400, .sample_bound = scene.sample_bound()};
-    // What the pool can give.
+    // What the pool can give, and an eighth more for the look that deals it out.
     options.budget = 9 * options.probes * aglow::probe_batches * scene.samples_per_look() / 8;
     const true_errors truth = errors_of(scene, picture, options.dark);
     // A target near the true error: what a false certificate would take least luck for.
