@@ -4,8 +4,8 @@
 #include <exception>
 #include <fstream>
 
+#include "common/counted_scene.hpp"
 #include "common/scenes/registry.hpp"
-#include "render/counted_scene.hpp"
 #include "render/options.hpp"
 #include "render/scenes.hpp"
 #include "render/usage_error.hpp"

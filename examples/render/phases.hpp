@@ -10,21 +10,11 @@
 
 #include <aglow/algorithms/preparation.hpp>
 
+#include "common/phase_name.hpp"
 #include "common/progress.hpp"
 #include "render/report.hpp"
 
 namespace host {
-
-/// What people call a phase.
-[[nodiscard]] inline std::string name_of(aglow::preparation_phase phase) {
-    switch (phase) {
-        case aglow::preparation_phase::photons: return "photons";
-        case aglow::preparation_phase::irradiance: return "irradiance at photons";
-        case aglow::preparation_phase::places: return "places for records";
-        case aglow::preparation_phase::records: break;
-    }
-    return "irradiance cache";
-}
 
 /// The seconds of a whole job.
 class time_budget {

@@ -1,4 +1,4 @@
-#include "render/counted_scene.hpp"
+#include "common/counted_scene.hpp"
 #include "render/renderer.hpp"
 #include "render/scenes.hpp"
 

@@ -1,7 +1,7 @@
 #include <utility>
 
+#include "common/counted_scene.hpp"
 #include "common/model_scene.hpp"
-#include "render/counted_scene.hpp"
 #include "render/renderer.hpp"
 #include "render/scenes.hpp"
 #include "render/usage_error.hpp"
