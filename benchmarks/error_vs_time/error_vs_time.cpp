@@ -3,333 +3,310 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <aglow/core/version.hpp>
 #include <aglow/report/bias_variance.hpp>
 
 #include "common/image_io.hpp"
+#include "common/progress.hpp"
 #include "common/scenes/registry.hpp"
 #include "error_vs_time/ladder.hpp"
 #include "error_vs_time/make_run.hpp"
+#include "error_vs_time/options.hpp"
+#include "error_vs_time/plot.hpp"
+#include "error_vs_time/png.hpp"
+#include "error_vs_time/provenance.hpp"
 #include "error_vs_time/records.hpp"
 #include "error_vs_time/report_page.hpp"
+#include "error_vs_time/truth.hpp"
+#include "error_vs_time/work_left.hpp"
 
 using namespace error_vs_time;
 
 namespace {
 
-struct settings {
-    std::filesystem::path output{"build/error_vs_time"};
-    std::vector<std::string> scenes{"cornell-diffuse", "cornell-glass"};
-    std::size_t size{256};
-    std::size_t seeds{3};
-    std::uint32_t reference_samples{2048};
-    bool full{false};
-    bool smoke{false};
-};
-
-constexpr std::string_view usage =
-    "usage: error_vs_time [--output DIR] [--scene NAME]... [--size N] [--seeds N] [--full | --smoke]\n"
-    "Renders scenes by all methods at rising budgets and writes runs.csv, report.json, report.html, report.md and the\n"
-    "curves of each scene as SVG into DIR (build/error_vs_time). What DIR holds already of the same study is not "
-    "rendered again. A few minutes; with\n"
-    "--full, hours: more seeds, larger budgets, all scenes.\n";
-
-settings parse(int count, char** arguments) {
-    settings result;
-    bool named = false;
-    for (int i = 1; i < count; ++i) {
-        const std::string_view word = arguments[i];
-        const auto value = [&]() -> std::string {
-            if (++i >= count) { throw std::invalid_argument(std::string{word} + " wants a value"); }
-            return arguments[i];
-        };
-        if (word == "--output") {
-            result.output = value();
-        } else if (word == "--scene") {
-            if (!named) { result.scenes.clear(); }
-            named = true;
-            result.scenes.push_back(value());
-        } else if (word == "--size") {
-            result.size = std::stoul(value());
-        } else if (word == "--seeds") {
-            result.seeds = std::max(2ul, std::stoul(value()));
-        } else if (word == "--full") {
-            result.full = true;
-            result.seeds = 8;
-        } else if (word == "--smoke") {
-            result.smoke = true;
-            result.size = 16;
-            result.seeds = 2;
-            result.reference_samples = 16;
-            result.scenes = {"cornell-diffuse"};
-        } else {
-            throw std::invalid_argument("unknown option " + std::string{word});
-        }
-    }
-    if (result.full && !named) {
-        result.scenes.insert(result.scenes.end(), {"glossy-floor", "point-light", "sky-room"});
-    }
-    return result;
-}
+using description = host::scene_description<float>;
 
 /// Replaces `file` at once, so that a stop in the middle leaves the old one.
 void write(const std::filesystem::path& file, const std::string& text) {
     const std::filesystem::path part = file.string() + ".part";
-    std::ofstream{part, std::ios::binary} << text;
+    std::ofstream out{part, std::ios::binary};
+    out << text;
+    out.close();
+    if (!out) { throw std::runtime_error(file.string() + ": cannot be written"); }
     std::filesystem::rename(part, file);
 }
 
-std::string first_line_of(const char* file, const std::string& start) {
-    std::ifstream in{file};
-    for (std::string line; std::getline(in, line);) {
-        if (line.rfind(start, 0) == 0) { return line.substr(line.find(':') + 2); }
+std::vector<description> scenes_named(const std::vector<std::string>& names) {
+    std::vector<description> found;
+    for (const std::string& name : names) {
+        auto scene = host::scenes::find<float>(name);
+        if (!scene) {
+            std::string known;
+            for (const description& s : host::scenes::all<float>()) { known += ' ' + s.name; }
+            throw std::invalid_argument("no scene " + name + "; there are" + known);
+        }
+        found.push_back(std::move(*scene));
     }
-    return "unknown";
+    return found;
 }
 
-text_pairs provenance(const settings& s) {
-    return {{"library", "aglow " + std::to_string(aglow::version.major) + "." + std::to_string(aglow::version.minor) +
-                            "." + std::to_string(aglow::version.patch)},
-            {"compiler", __VERSION__},
-#ifdef __OPTIMIZE__
-            {"optimised", "yes"},
-#else
-            {"optimised", "no"},
-#endif
-            {"processor", first_line_of("/proc/cpuinfo", "model name")},
-            {"threads", "1"},
-            {"seeds", std::to_string(s.seeds)},
-            {"size", std::to_string(s.size) + " x " + std::to_string(s.size)}};
-}
+/// One step of a method in a scene, with all its seeds.
+struct rung {
+    const description& scene;
+    const ladder& method;
+    std::size_t step;
+    bool last;  ///< of its method: the last picture is shown and audited
 
-/// A scene's true picture, in two halves where it was made here.
-struct truth {
-    std::vector<float> first{};
-    std::vector<float> second{};
-    scene_note note{};
-
-    [[nodiscard]] std::vector<float> mean() const {
-        std::vector<float> m(first.size());
-        for (std::size_t i = 0; i < m.size(); ++i) { m[i] = 0.5f * first[i] + 0.5f * second[i]; }
-        return m;
+    [[nodiscard]] bool is_of(const std::string& its_scene, const std::string& its_method) const {
+        return scene.name == its_scene && method.name == its_method;
+    }
+    template <typename Note>
+    [[nodiscard]] bool is_of(const Note& note) const {
+        return is_of(note.scene, note.method) && note.budget == step;
     }
 };
 
 class runner {
 public:
-    explicit runner(const settings& s) : settings_{s} {
-        std::filesystem::create_directories(s.output);
+    explicit runner(const options& o) : options_{o}, scenes_{scenes_named(o.scenes)} {
+        std::filesystem::create_directories(o.output / "pictures");
         study_.title = "aglow: error against run time";
         study_.baseline = "path tracing";
-        study_.provenance = provenance(s);
+        study_.provenance = provenance(o.seeds, o.size, o.reference_samples);
+        if (!o.relmse_targets.empty()) { study_.relmse_targets = o.relmse_targets; }
         resume();
+        plan();
     }
 
     void run() {
         std::size_t done = 0;
-        const std::size_t all = total();
-        for (const std::string& name : settings_.scenes) {
-            const auto scene = host::scenes::find<float>(name);
-            if (!scene) { throw std::invalid_argument("no scene called " + name); }
-            const truth known = truth_of(*scene);
+        for (const description& scene : scenes_) {
+            const truth known = made_truth(scene);
             study_.scenes.push_back(known.note);
-            for (const ladder& method : ladders()) { done = climb(*scene, known, method, done, all); }
-            add_picture({.scene = name, .method = "reference", .caption = "reference"}, known.mean(), {});
+            for (const rung& r : rungs_) {
+                if (&r.scene == &scene) { climb(r, known, done); }
+            }
+            show({.scene = scene.name, .method = "reference"}, known.mean(), {});
         }
+        earlier_ = {};
         write_all();
-        std::printf("\n%s\nwritten to %s\n", report_markdown(study_).c_str(), settings_.output.c_str());
+        std::printf("\n%s\nwritten to %s\n", report_markdown(study_).c_str(), options_.output.c_str());
     }
 
 private:
-    [[nodiscard]] bool wanted(const budget& b, std::size_t step) const {
-        return settings_.smoke ? step == 0 : settings_.full || !b.full;
+    // ---- what is to be done -----------------------------------------------------------------------------------------
+
+    [[nodiscard]] bool wanted(const ladder& method, std::size_t step) const {
+        if (step >= method.steps.size()) { return false; }
+        return options_.smoke ? step == 0 : options_.full || !method.steps[step].full;
     }
 
-    [[nodiscard]] std::size_t total() const {
-        std::size_t count = 0;
-        for (const ladder& l : ladders()) {
-            for (std::size_t i = 0; i < l.steps.size(); ++i) { count += wanted(l.steps[i], i) ? settings_.seeds : 0; }
-        }
-        return count * settings_.scenes.size();
-    }
-
-    /// Takes over the runs of an earlier, unfinished study of the same settings.
-    void resume() {
-        std::ifstream in{settings_.output / "report.json", std::ios::binary};
-        if (!in) { return; }
-        try {
-            const study before = read_report(std::string{std::istreambuf_iterator<char>{in}, {}});
-            if (before.provenance == study_.provenance) { earlier_ = before.runs; }
-        } catch (const std::runtime_error&) { earlier_.clear(); }
-    }
-
-    [[nodiscard]] const run_note* known_run(const std::string& scene, const ladder& method, std::size_t step,
-                                            std::uint64_t seed) const {
-        for (const run_note& r : earlier_) {
-            if (r.scene == scene && r.method == method.name && r.budget == step && r.seed == seed &&
-                r.settings == method.steps[step].told()) {
-                return &r;
+    void plan() {
+        for (const description& scene : scenes_) {
+            for (const ladder& method : ladders_) {
+                for (std::size_t step = 0; wanted(method, step); ++step) {
+                    rungs_.push_back({scene, method, step, !wanted(method, step + 1)});
+                    left_.expect(cost(rungs_.back()) * static_cast<double>(options_.seeds));
+                }
             }
+            if (must_be_made(scene, options_.size, reference_file(scene))) { left_.expect(reference_cost()); }
         }
-        return nullptr;
     }
 
-    truth truth_of(const host::scene_description<float>& scene) {
-        const std::filesystem::path file = std::filesystem::path{AGLOW_REFERENCES} / (scene.name + ".exr");
-        truth known{
-            .note = {
-                .name = scene.name, .description = scene.about, .width = settings_.size, .height = settings_.size}};
-        if (std::filesystem::exists(file) && read_reference(file, known)) { return known; }
-        std::printf("reference of %s: path tracing, 2 x %u samples per pixel\n", scene.name.c_str(),
-                    settings_.reference_samples);
-        reference_halves halves = path_traced(scene, settings_.reference_samples, settings_.size);
-        known.first = std::move(halves.first);
-        known.second = std::move(halves.second);
-        tell_noise(known);
+    [[nodiscard]] static double cost(const rung& r) { return r.method.steps[r.step].cost; }
+    /// Of path tracing at 4 samples, which the first rung is.
+    [[nodiscard]] double reference_cost() const {
+        return ladders_.front().steps.front().cost / 4 * 2 * options_.reference_samples;
+    }
+    [[nodiscard]] std::filesystem::path reference_file(const description& scene) const {
+        return options_.output / "pictures" / (scene.name + "-reference.exr");
+    }
+    [[nodiscard]] std::filesystem::path picture_file(const std::string& scene, std::string method) const {
+        std::replace(method.begin(), method.end(), ' ', '-');
+        return options_.output / "pictures" / (scene + '-' + method + ".exr");
+    }
+
+    truth made_truth(const description& scene) {
+        const bool new_one = must_be_made(scene, options_.size, reference_file(scene));
+        const auto begun = work_left::clock::now();
+        truth known = truth_of(scene, options_.size, options_.reference_samples, reference_file(scene));
+        if (new_one) { left_.did(reference_cost(), since(begun)); }
         return known;
     }
 
-    /// Takes the scene's reference picture from its file; false where that is of another size.
-    bool read_reference(const std::filesystem::path& file, truth& known) const {
-        const host::picture image = host::read_exr(file);
-        if (image.width != settings_.size || image.height != settings_.size) { return false; }
-        const auto take = [](const host::picture& from, std::vector<float>& into) {
-            for (const auto& p : from.pixels) { into.insert(into.end(), {p.x, p.y, p.z}); }
-        };
-        take(image, known.first);
-        if (known.note.name == "cornell-diffuse" || known.note.name == "cornell-glass") {
-            known.second = known.first;
-            known.note.reference = "an independent path tracer's picture, relMSE between its halves 2e-5";
-            known.note.reference_relmse = 2e-5;
-            return true;
+    // ---- an earlier, unfinished study of the same making ------------------------------------------------------------
+
+    void resume() {
+        std::ifstream in{options_.output / "report.json", std::ios::binary};
+        if (!in) { return; }
+        try {
+            study before = read_report(std::string{std::istreambuf_iterator<char>{in}, {}});
+            if (same_making(before.provenance, study_.provenance)) { earlier_ = std::move(before); }
+        } catch (const std::runtime_error&) { return; }  // cut off or of another version: nothing to go on with
+    }
+
+    [[nodiscard]] std::size_t runs_known(const rung& r) const {
+        return static_cast<std::size_t>(std::count_if(earlier_.runs.begin(), earlier_.runs.end(), [&](const auto& run) {
+            return r.is_of(run) && run.settings == r.method.told(r.step);
+        }));
+    }
+
+    /// Takes a step over whole: its runs, their bias and variance, and, where it is the last, the audit and the
+    /// picture.
+    bool taken_over(const rung& r, const truth& known) {
+        const auto parts =
+            std::find_if(earlier_.parts.begin(), earlier_.parts.end(), [&](const parts_note& p) { return r.is_of(p); });
+        if (runs_known(r) != options_.seeds || parts == earlier_.parts.end()) { return false; }
+        const auto audit = std::find_if(earlier_.audits.begin(), earlier_.audits.end(),
+                                        [&](const audit_note& a) { return r.is_of(a.scene, a.method); });
+        std::vector<float> picture;
+        if (r.last) {
+            picture = kept_picture(r);
+            if (picture.empty() || audit == earlier_.audits.end()) { return false; }
+            study_.audits.push_back(*audit);
         }
-        take(host::read_exr(file, host::second_half), known.second);
-        tell_noise(known);
+        study_.parts.push_back(*parts);
+        for (const run_note& run : earlier_.runs) {
+            if (r.is_of(run)) { study_.runs.push_back(run); }
+        }
+        if (r.last) { show_run(study_.runs.back(), picture, known); }
         return true;
     }
 
-    void tell_noise(truth& known) const {
-        const aglow::image_error noise = compare(known.first, known);
-        known.note.reference = "own path tracer, two halves";
-        known.note.reference_relmse = noise.reference_relmse;
-        known.note.reference_mape = noise.reference_mape;
+    /// The picture that an earlier study showed; empty where it is not there whole.
+    [[nodiscard]] std::vector<float> kept_picture(const rung& r) const {
+        try {
+            const host::picture image = host::read_exr(picture_file(r.scene.name, r.method.name));
+            if (image.width == options_.size && image.height == options_.size) { return values_of(image); }
+        } catch (const std::runtime_error&) { return {}; }
+        return {};
     }
 
-    [[nodiscard]] aglow::image_view<float> view(const std::vector<float>& values) const {
-        return {values, settings_.size, settings_.size, 3};
-    }
-    [[nodiscard]] aglow::image_error compare(const std::vector<float>& image, const truth& known) const {
-        return aglow::compare(view(image), view(known.first), view(known.second));
-    }
-
-    /// All budgets and seeds of a method. The last picture made is shown and audited.
-    std::size_t climb(const host::scene_description<float>& scene, const truth& known, const ladder& method,
-                      std::size_t done, std::size_t all) {
-        for (std::size_t step = 0; step < method.steps.size(); ++step) {
-            if (!wanted(method.steps[step], step)) { continue; }
-            const bool last = step + 1 == method.steps.size() || !wanted(method.steps[step + 1], step + 1);
-            aglow::bias_variance parts;
-            std::size_t collected = 0;
-            for (std::uint64_t seed = 1; seed <= settings_.seeds; ++seed) {
-                tell(++done, all, scene.name, method, step);
-                const run_note* before = last ? nullptr : known_run(scene.name, method, step, seed);
-                if (before != nullptr) {
-                    study_.runs.push_back(*before);
-                    continue;
-                }
-                made_run made = make_run(scene, method, step, seed, settings_.size);
-                made.note.error = compare(made.values, known);
-                parts.add(view(made.values));
-                ++collected;
-                study_.runs.push_back(made.note);
-                if (last && seed == settings_.seeds) { show(scene, known, made); }
-            }
-            if (collected >= 2) {
-                study_.parts.push_back(
-                    {scene.name, method.name, step, parts.parts(view(known.first), view(known.second))});
-            }
-            write_records();
+    /// What this study has, and what an earlier one has besides that may still be taken over.
+    [[nodiscard]] study all_known() const {
+        study all = study_;
+        for (const rung& r : rungs_) {
+            const auto has = [&](const auto& note) { return r.is_of(note); };
+            if (std::any_of(all.runs.begin(), all.runs.end(), has)) { continue; }
+            std::copy_if(earlier_.runs.begin(), earlier_.runs.end(), std::back_inserter(all.runs), has);
+            std::copy_if(earlier_.parts.begin(), earlier_.parts.end(), std::back_inserter(all.parts), has);
+            if (!r.last) { continue; }
+            std::copy_if(earlier_.audits.begin(), earlier_.audits.end(), std::back_inserter(all.audits),
+                         [&](const audit_note& a) { return r.is_of(a.scene, a.method); });
         }
-        return done;
+        return all;
     }
 
-    void show(const host::scene_description<float>& scene, const truth& known, const made_run& made) {
-        study_.audits.push_back(audit_run(scene, made, 0.05, known.mean(), settings_.size));
-        char caption[160];
-        std::snprintf(caption, sizeof caption, "%s, %.1f s, relMSE %.1e", made.note.settings.c_str(),
-                      made.note.cpu_seconds, made.note.error.relmse);
-        add_picture({.scene = scene.name, .method = made.note.method, .caption = caption}, made.values, known.mean());
-    }
+    // ---- the work ---------------------------------------------------------------------------------------------------
 
-    void add_picture(picture_note note, const std::vector<float>& values, const std::vector<float>& truth) {
-        note.width = note.height = settings_.size;
-        for (const float x : values) {
-            const float c = std::clamp(x, 0.0f, 1.0f);
-            const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
-            note.rgb.push_back(static_cast<std::uint8_t>(s * 255 + 0.5f));
+    /// All seeds of one step.
+    void climb(const rung& r, const truth& known, std::size_t& done) {
+        if (taken_over(r, known)) {
+            done += options_.seeds;
+            left_.spared(cost(r) * static_cast<double>(options_.seeds));
+            return;
         }
-        for (std::size_t i = 0; i + 2 < truth.size(); i += 3) { add_false_colour(note, &values[i], &truth[i]); }
+        aglow::bias_variance parts;
+        for (std::uint64_t seed = 1; seed <= options_.seeds; ++seed) {
+            tell(++done, r);
+            const auto begun = work_left::clock::now();
+            made_run made = make_run(r.scene, r.method, r.step, seed, options_.size);
+            made.note.error = known.compare(made.values);
+            parts.add(view(made.values));
+            study_.runs.push_back(made.note);
+            if (r.last && seed == options_.seeds) { finish(r, made, known); }
+            left_.did(cost(r), since(begun));
+        }
+        study_.parts.push_back(
+            {r.scene.name, r.method.name, r.step, parts.parts(view(known.first), view(known.second))});
+        write(options_.output / "report.json", report_json(all_known()));
+    }
+
+    /// Audits the last picture of a method, keeps it and shows it.
+    void finish(const rung& r, const made_run& made, const truth& known) {
+        study_.audits.push_back(audit_run(r.scene, made, 0.05, known.mean(), options_.size));
+        host::picture guess{options_.size, options_.size};
+        for (std::size_t i = 0; i < made.guess.size(); ++i) { guess.pixels[i] = aglow::vec3<float>{made.guess[i]}; }
+        host::write_exr(picture_file(r.scene.name, r.method.name),
+                        {{"", picture_of(made.values, options_.size)}, {"guess", guess}});
+        show_run(made.note, made.values, known);
+    }
+
+    void show_run(const run_note& run, const std::vector<float>& values, const truth& known) {
+        const std::string caption =
+            run.settings + ", " + rounded(run.cpu_seconds, 2) + " s, relMSE " + rounded(run.error.relmse, 2);
+        show({.scene = run.scene, .method = run.method, .caption = caption}, values, known.mean());
+    }
+
+    void show(picture_note note, const std::vector<float>& values, const std::vector<float>& truth) {
+        note.width = note.height = options_.size;
+        note.rgb = shown(values);
+        if (!truth.empty()) { note.error_rgb = shown_error(values, truth, dark_of(truth)); }
         study_.pictures.push_back(std::move(note));
     }
 
-    /// Blue where too dark, red where too bright, black where right; full at 20 % off.
-    static void add_false_colour(picture_note& note, const float* value, const float* truth) {
-        const float light = truth[0] + truth[1] + truth[2] + 0.01f;
-        const float off = (value[0] + value[1] + value[2] - light + 0.01f) / light * 5;
-        const auto level = [](float x) { return static_cast<std::uint8_t>(255 * std::clamp(x, 0.0f, 1.0f)); };
-        const float strong = std::abs(off) - 1;
-        note.error_rgb.insert(note.error_rgb.end(), {level(off), level(strong), level(-off)});
+    /// What the MAPE adds to each pixel's reference.
+    [[nodiscard]] double dark_of(const std::vector<float>& truth) const {
+        return aglow::image_error_options{}.dark * aglow::mean_value(view(truth));
     }
 
-    void tell(std::size_t done, std::size_t all, const std::string& scene, const ladder& method,
-              std::size_t step) const {
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
-        const double left =
-            done > 1 ? seconds / static_cast<double>(done - 1) * static_cast<double>(all - done + 1) : 0;
+    [[nodiscard]] aglow::image_view<float> view(const std::vector<float>& values) const {
+        return {values, options_.size, options_.size, 3};
+    }
+
+    // ---- what is told -----------------------------------------------------------------------------------------------
+
+    [[nodiscard]] static double since(work_left::clock::time_point begun) {
+        return std::chrono::duration<double>(work_left::clock::now() - begun).count();
+    }
+
+    void tell(std::size_t done, const rung& r) const {
         const bool terminal = isatty(STDOUT_FILENO) != 0;
-        std::printf("%s%zu/%zu  %s, %s, %s  (about %.0f s left)   %s", terminal ? "\r\033[K" : "", done, all,
-                    scene.c_str(), method.name, method.steps[step].told().c_str(), left, terminal ? "" : "\n");
+        const std::string left = left_.known() ? "  (about " + host::spoken(left_.seconds()) + " left)" : "";
+        std::printf("%s%zu/%zu  %s, %s, %s%s%s", terminal ? "\r\033[K" : "", done, rungs_.size() * options_.seeds,
+                    r.scene.name.c_str(), r.method.name, r.method.told(r.step).c_str(), left.c_str(),
+                    terminal ? "" : "\n");
         std::fflush(stdout);
     }
 
-    void write_records() const { write(settings_.output / "report.json", report_json(study_)); }
-
     void write_all() const {
-        write_records();
-        write(settings_.output / "runs.csv", runs_csv(study_));
-        write(settings_.output / "report.html", report_html(study_));
-        write(settings_.output / "report.md", report_markdown(study_));
-        for (const std::string& scene : settings_.scenes) {
-            write(settings_.output / (scene + "-relmse.svg"), report_svg(study_, scene, metrics()[1]));
+        write(options_.output / "report.json", report_json(study_));
+        write(options_.output / "runs.csv", runs_csv(study_));
+        write(options_.output / "report.html", report_html(study_));
+        write(options_.output / "report.md", report_markdown(study_));
+        for (const scene_note& scene : study_.scenes) {
+            write(options_.output / (scene.name + "-relmse.svg"), report_svg(study_, scene.name, metrics()[1]));
         }
     }
 
-    settings settings_;
+    options options_;
+    std::vector<description> scenes_;
+    std::vector<ladder> ladders_{ladders()};
+    std::vector<rung> rungs_{};
     study study_{};
-    std::vector<run_note> earlier_{};
-    std::chrono::steady_clock::time_point begun_{std::chrono::steady_clock::now()};
+    study earlier_{};
+    work_left left_{};
 };
 
 }  // namespace
 
 int main(int count, char** arguments) {
-    if (count > 1 && std::string_view{arguments[1]} == "--help") {
-        std::fputs(usage.data(), stdout);
-        return 0;
-    }
     try {
-        runner{parse(count, arguments)}.run();
+        const options asked = parse(std::vector<std::string_view>(arguments + 1, arguments + count));
+        if (asked.help) {
+            std::fputs(usage.data(), stdout);
+            return 0;
+        }
+        runner{asked}.run();
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "error_vs_time: %s\n", error.what());

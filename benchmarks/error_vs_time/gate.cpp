@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include <aglow/report/distributions.hpp>
 #include <aglow/report/running_mean.hpp>
@@ -19,6 +21,7 @@ struct step {
     std::string method;
     std::size_t budget;
     auto operator<=>(const step&) const = default;
+    [[nodiscard]] std::string told() const { return scene + ", " + method + ", step " + std::to_string(budget + 1); }
 };
 
 using by_seed = std::map<std::uint64_t, const run_note*>;
@@ -35,21 +38,61 @@ double two_sided_p(const aglow::running_mean& logs) {
     return 2 * aglow::student_t_cdf(-t, static_cast<double>(logs.count() - 1));
 }
 
-template <typename Of>
-void add(std::vector<difference>& found, const step& where, const by_seed& before, const by_seed& after,
-         const char* quantity, const Of& of) {
-    aglow::running_mean logs;
+struct quantity {
+    const char* name;
+    double (*of)(const run_note&);
+};
+
+constexpr quantity quantities[]{
+    {"relMSE", [](const run_note& r) { return r.error.relmse; }},
+    {"MAPE", [](const run_note& r) { return r.error.mape; }},
+    {"CPU seconds", [](const run_note& r) { return r.cpu_seconds; }},
+};
+
+/// Logarithms of after over before, of the seeds that both have.
+std::vector<double> log_ratios(const by_seed& before, const by_seed& after, const quantity& what) {
+    std::vector<double> logs;
     for (const auto& [seed, run] : before) {
         const auto other = after.find(seed);
-        if (other == after.end() || !(of(*run) > 0) || !(of(*other->second) > 0)) { continue; }
-        logs.add(std::log(of(*other->second) / of(*run)));
+        if (other == after.end() || !(what.of(*run) > 0) || !(what.of(*other->second) > 0)) { continue; }
+        logs.push_back(std::log(what.of(*other->second) / what.of(*run)));
     }
-    if (logs.count() < 2) { return; }
-    difference d{.scene = where.scene, .method = where.method, .budget = where.budget, .quantity = quantity};
-    d.ratio = std::exp(logs.mean());
-    d.p_value = two_sided_p(logs);
-    d.pairs = logs.count();
-    found.push_back(d);
+    return logs;
+}
+
+void add(std::vector<difference>& found, difference d, std::span<const double> logs) {
+    const aglow::running_mean mean = aglow::mean_of(logs);
+    if (mean.count() < 2) { return; }
+    d.ratio = std::exp(mean.mean());
+    d.p_value = two_sided_p(mean);
+    d.pairs = mean.count();
+    found.push_back(std::move(d));
+}
+
+/// Each step of the first study that the second has too.
+template <typename Visit>
+void for_each_common(const std::map<step, by_seed>& before, const std::map<step, by_seed>& after, const Visit& visit) {
+    for (const auto& [where, runs] : before) {
+        const auto now = after.find(where);
+        if (now != after.end()) { visit(where, runs, now->second); }
+    }
+}
+
+bool has_scene(const study& all, const std::string& scene) {
+    return std::any_of(all.runs.begin(), all.runs.end(), [&](const run_note& r) { return r.scene == scene; });
+}
+
+std::string value_of(const text_pairs& pairs, const std::string& name) {
+    const auto found = std::find_if(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == name; });
+    return found == pairs.end() ? "not told" : found->second;
+}
+
+void add_missing_scenes(std::vector<std::string>& lines, const study& from, const study& in, const char* which) {
+    std::set<std::string> scenes;
+    for (const run_note& r : from.runs) { scenes.insert(r.scene); }
+    for (const std::string& scene : scenes) {
+        if (!has_scene(in, scene)) { lines.push_back(scene + ": not in the " + which + " report"); }
+    }
 }
 
 }  // namespace
@@ -72,12 +115,18 @@ std::vector<difference> differences(const study& before, const study& after, con
     const std::map<step, by_seed> old_steps = steps_of(before);
     const std::map<step, by_seed> new_steps = steps_of(after);
     std::vector<difference> found;
-    for (const auto& [where, old_runs] : old_steps) {
-        const auto now = new_steps.find(where);
-        if (now == new_steps.end()) { continue; }
-        add(found, where, old_runs, now->second, "relMSE", [](const run_note& r) { return r.error.relmse; });
-        add(found, where, old_runs, now->second, "MAPE", [](const run_note& r) { return r.error.mape; });
-        add(found, where, old_runs, now->second, "CPU seconds", [](const run_note& r) { return r.cpu_seconds; });
+    for (const quantity& what : quantities) {
+        std::map<std::pair<std::string, std::string>, std::vector<double>> together;
+        for_each_common(old_steps, new_steps, [&](const step& where, const by_seed& old_runs, const by_seed& new_runs) {
+            const std::vector<double> logs = log_ratios(old_runs, new_runs, what);
+            add(found, {.scene = where.scene, .method = where.method, .budget = where.budget, .quantity = what.name},
+                logs);
+            auto& all = together[{where.scene, where.method}];
+            all.insert(all.end(), logs.begin(), logs.end());
+        });
+        for (const auto& [where, logs] : together) {
+            add(found, {.scene = where.first, .method = where.second, .quantity = what.name}, logs);
+        }
     }
     std::vector<double> p_values;
     for (const difference& d : found) { p_values.push_back(d.p_value); }
@@ -94,17 +143,51 @@ bool worse(std::span<const difference> all, const gate_options& options) {
                        [&](const difference& d) { return d.significant && d.ratio > 1 + options.smallest; });
 }
 
+std::vector<std::string> losses(const study& before, const study& after) {
+    const std::map<step, by_seed> new_steps = steps_of(after);
+    std::vector<std::string> lines;
+    for (const auto& [where, old_runs] : steps_of(before)) {
+        if (!has_scene(after, where.scene)) { continue; }
+        const auto now = new_steps.find(where);
+        for (const auto& [seed, run] : old_runs) {
+            const bool there = now != new_steps.end() && now->second.contains(seed);
+            const std::string name = where.told() + ", seed " + std::to_string(seed);
+            if (!there) { lines.push_back(name + ": not in the second report"); }
+            const std::size_t broken = there ? now->second.at(seed)->error.broken : 0;
+            if (broken > run->error.broken) {
+                lines.push_back(name + ": " + std::to_string(broken) + " broken pixels, " +
+                                std::to_string(run->error.broken) + " before");
+            }
+        }
+    }
+    return lines;
+}
+
+std::vector<std::string> unlike(const study& before, const study& after) {
+    std::vector<std::string> lines;
+    for (const auto& [name, value] : before.provenance) {
+        const std::string now = value_of(after.provenance, name);
+        if (now != value) { lines.push_back(name + ": " + value + " before, now " + now); }
+    }
+    add_missing_scenes(lines, before, after, "second");
+    add_missing_scenes(lines, after, before, "first");
+    return lines;
+}
+
 std::string told(std::span<const difference> all) {
     std::vector<const difference*> order;
-    for (const difference& d : all) { order.push_back(&d); }
+    for (const difference& d : all) {
+        if (d.ratio != 1) { order.push_back(&d); }
+    }
     std::stable_sort(order.begin(), order.end(), [](const difference* a, const difference* b) {
         return a->significant != b->significant ? a->significant : a->adjusted_p < b->adjusted_p;
     });
     std::string out;
     for (const difference* d : order) {
         out += std::string{d->significant ? (d->ratio > 1 ? "WORSE   " : "better  ") : "        "} + d->scene + ", " +
-               d->method + ", step " + std::to_string(d->budget + 1) + ": " + d->quantity + " × " + rounded(d->ratio) +
-               " (p " + rounded(d->adjusted_p) + ", " + std::to_string(d->pairs) + " seeds)\n";
+               d->method + (d->budget ? ", step " + std::to_string(*d->budget + 1) : ", all steps") + ": " +
+               d->quantity + " × " + rounded(d->ratio) + " (p " + rounded(d->adjusted_p) + ", " +
+               std::to_string(d->pairs) + " pairs)\n";
     }
     return out;
 }

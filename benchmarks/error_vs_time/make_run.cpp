@@ -1,11 +1,17 @@
 #include "error_vs_time/make_run.hpp"
 
 #include <time.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <aglow/algorithms/cache_integrators.hpp>
 #include <aglow/algorithms/path_trace.hpp>
@@ -13,6 +19,10 @@
 #include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/progressive.hpp>
 #include <aglow/report/audit.hpp>
+#include <aglow/report/statement.hpp>
+
+#include "common/counted_scene.hpp"
+#include "common/phase_name.hpp"
 
 namespace error_vs_time {
 
@@ -24,8 +34,14 @@ double cpu_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Forgets the largest memory use so far, where the system lets one.
-void reset_peak() { std::ofstream{"/proc/self/clear_refs"} << '5'; }
+/// Forgets the largest memory use so far, where the system lets one. What earlier runs have freed goes back to it
+/// first: it would count as this run's.
+void reset_peak() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+    std::ofstream{"/proc/self/clear_refs"} << '5';
+}
 
 double peak_bytes() {
     std::ifstream status{"/proc/self/status"};
@@ -47,13 +63,39 @@ std::vector<float> values_of(const aglow::film<rgb>& film) {
     return values;
 }
 
-/// Calls `use` with the scene, as a diffuse one where it is.
+/// Calls `use` with the scene, as a diffuse one where it is; its rays are counted.
 template <typename Use>
 auto with_scene(const host::scene_description<float>& d, const Use& use) {
-    const host::scene<float> any{d};
-    if (any.possible_lobes() == aglow::lobe_set::diffuse_reflection) { return use(host::diffuse_scene<float>{d}); }
+    const host::counted_scene<host::scene<float>> any{d};
+    if (any.possible_lobes() == aglow::lobe_set::diffuse_reflection) {
+        return use(host::counted_scene<host::diffuse_scene<float>>{d});
+    }
     return use(any);
 }
+
+/// Listens to an integrator's preparation and notes the CPU seconds of each phase.
+class phase_clock {
+public:
+    explicit phase_clock(number_pairs& phases) : phases_{phases} {}
+
+    bool operator()(const aglow::preparation& now) {
+        if (open_ != now.phase) { close(); }
+        open_ = now.phase;
+        return true;
+    }
+    /// Ends the phase that is open.
+    void close() {
+        const double now = cpu_seconds();
+        if (open_) { phases_.emplace_back(host::name_of(*open_), now - begun_); }
+        open_.reset();
+        begun_ = now;
+    }
+
+private:
+    number_pairs& phases_;
+    double begun_{cpu_seconds()};
+    std::optional<aglow::preparation_phase> open_{};
+};
 
 /// One run in the making.
 template <typename World>
@@ -65,7 +107,9 @@ public:
     made_run make(technique how) {
         reset_peak();
         const auto wall = std::chrono::steady_clock::now();
-        start_ = cpu_seconds();
+        const double start = cpu_seconds();
+        const std::uint64_t nearest = host::ray_count::all_nearest();
+        const std::uint64_t shadow = host::ray_count::all_shadow();
         switch (how) {
             case technique::path: expose(aglow::path_tracer{scene_, scene_.lights()}); break;
             case technique::irradiance_cache: irradiance_cache(); break;
@@ -75,10 +119,11 @@ public:
             case technique::progressive: progressive(); break;
         }
         run_note& note = run_.note;
-        note.cpu_seconds = cpu_seconds() - start_;
+        note.cpu_seconds = cpu_seconds() - start;
         note.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
         note.peak_bytes = peak_bytes();
-        note.settings = budget_.told();
+        count("rays", static_cast<double>(host::ray_count::all_nearest() - nearest));
+        count("shadow rays", static_cast<double>(host::ray_count::all_shadow() - shadow));
         note.seed = seed_;
         run_.values = values_of(film_);
         for (std::size_t i = 0; i < size_ * size_; ++i) { run_.guess.push_back(film_.error(i % size_, i / size_)); }
@@ -105,9 +150,8 @@ private:
     template <typename Integrator>
     void expose(const Integrator& integrator) {
         const double before = cpu_seconds();
-        run_.note.phases.emplace_back("prepare", before - start_);
         film_.expose(eye(), integrator, {.samples = budget_.samples, .seed = seed_});
-        run_.note.phases.emplace_back("shade", cpu_seconds() - before);
+        run_.note.phases.emplace_back("picture", cpu_seconds() - before);
         count("samples", static_cast<double>(size_ * size_) * budget_.samples);
     }
     void count(const char* what, double number) { run_.note.counts.emplace_back(what, number); }
@@ -120,23 +164,37 @@ private:
         count("gather rays", static_cast<double>(filled.rays));
     }
 
+    /// Makes an integrator by `how(progress)`, its phases timed.
+    template <typename How>
+    auto prepared(const How& how) {
+        phase_clock clock{run_.note.phases};
+        auto made = how(aglow::preparation_progress{std::ref(clock)});
+        clock.close();
+        return made;
+    }
+
     void irradiance_cache() {
-        const aglow::irradiance_caching picture{scene_, scene_.lights(), scene_.bounds(), eye(), caching()};
+        const auto picture = prepared([&](const auto& told) {
+            return aglow::irradiance_caching{scene_, scene_.lights(), scene_.bounds(), eye(), caching(), one_, told};
+        });
         count(picture.filled());
         expose(picture);
     }
     void photon_map() {
         aglow::photon_options wanted = photons();
         wanted.direct = 0;
-        const aglow::photon_mapping picture{scene_, scene_.lights(), {.photons = wanted}};
+        const auto picture = prepared([&](const auto& told) {
+            return aglow::photon_mapping{scene_, scene_.lights(), {.photons = wanted}, one_, told};
+        });
         count(picture.maps());
         expose(picture);
     }
     void final_gather() {
-        const aglow::final_gathering picture{
-            scene_,
-            scene_.lights(),
-            {.photons = photons(), .irradiance = {.every = budget_.every, .seed = seed_}, .rays = budget_.rays}};
+        const aglow::final_gathering_options options{
+            .photons = photons(), .irradiance = {.every = budget_.every, .seed = seed_}, .rays = budget_.rays};
+        const auto picture = prepared([&](const auto& told) {
+            return aglow::final_gathering{scene_, scene_.lights(), options, one_, told};
+        });
         count(picture.maps());
         expose(picture);
     }
@@ -145,7 +203,9 @@ private:
         options.photons = photons();
         options.irradiance = {.every = budget_.every, .seed = seed_};
         options.caching = caching();
-        const aglow::gather_caching picture{scene_, scene_.lights(), scene_.bounds(), eye(), options};
+        const auto picture = prepared([&](const auto& told) {
+            return aglow::gather_caching{scene_, scene_.lights(), scene_.bounds(), eye(), options, one_, told};
+        });
         count(picture.maps());
         count(picture.filled());
         expose(picture);
@@ -153,8 +213,9 @@ private:
     void progressive() {
         aglow::progressive_photon_mapping passes{
             scene_, scene_.lights(), {.caustic = budget_.caustic, .indirect = budget_.indirect, .seed = seed_}};
+        const double before = cpu_seconds();
         for (std::uint32_t i = 0; i < budget_.samples; ++i) { passes.pass(film_, eye()); }
-        run_.note.phases.emplace_back("shade", cpu_seconds() - start_);
+        run_.note.phases.emplace_back("passes", cpu_seconds() - before);
         count("passes", budget_.samples);
     }
 
@@ -163,7 +224,7 @@ private:
     std::uint64_t seed_;
     std::size_t size_;
     aglow::film<rgb> film_;
-    double start_{0};
+    aglow::in_sequence one_{};
     made_run run_{};
 };
 
@@ -177,19 +238,23 @@ made_run make_run(const host::scene_description<float>& scene, const ladder& met
     run.note.scene = scene.name;
     run.note.method = method.name;
     run.note.budget = step;
+    run.note.settings = method.told(step);
     return run;
 }
 
-reference_halves path_traced(const host::scene_description<float>& scene, std::uint32_t samples, std::size_t size) {
+reference_halves path_traced(const host::scene_description<float>& scene, std::uint32_t samples, std::size_t size,
+                             const aglow::callback<double>& progress) {
     return with_scene(scene, [&](const auto& world) {
         const aglow::path_tracer tracer{world, world.lights()};
-        const auto half = [&](std::uint64_t seed) {
+        const auto half = [&](std::uint64_t seed, double before) {
             aglow::film<rgb> film{size, size};
+            const auto told = [&](double share) { return !progress || progress(before + 0.5 * share); };
             film.expose([&](const aglow::vec2<float>& p) { return world.view().through(p, size, size); }, tracer,
-                        {.samples = samples, .seed = seed}, aglow::own_threads{});
+                        {.samples = samples, .seed = seed, .progress = told}, aglow::own_threads{});
             return values_of(film);
         };
-        return reference_halves{half(90001), half(90002)};
+        std::vector<float> first = half(90001, 0);
+        return reference_halves{std::move(first), half(90002, 0.5)};
     });
 }
 
@@ -205,11 +270,8 @@ audit_note audit_run(const host::scene_description<float>& scene, const made_run
         audit_note note{.scene = run.note.scene, .method = run.note.method};
         note.seconds = cpu_seconds() - before;
         note.render_seconds = run.note.cpu_seconds;
-        constexpr const char* words[] = {"certified", "not certified", "inconclusive"};
-        note.status = words[static_cast<int>(stated.status)];
-        for (const std::string& reason : stated.reasons) {
-            note.statement += (note.statement.empty() ? "" : "; ") + reason;
-        }
+        note.status = aglow::words(stated.status);
+        note.statement = aglow::statement(stated);
         note.target = target;
         note.bound = stated.mean_error_bound;
         note.bias_low = stated.energy_bias.low;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <aglow/algorithms/film.hpp>
+#include <aglow/core/callback.hpp>
 
 #include "common/scene.hpp"
 #include "error_vs_time/ladder.hpp"
@@ -26,13 +27,13 @@ struct made_run {
 [[nodiscard]] made_run make_run(const host::scene_description<float>& scene, const ladder& method, std::size_t step,
                                 std::uint64_t seed, std::size_t size);
 
-/// Two independent path-traced halves of a reference, `samples` per pixel each.
+/// Two independent path-traced halves of a reference, `samples` per pixel each. `progress` is told the share done.
 struct reference_halves {
     std::vector<float> first{};
     std::vector<float> second{};
 };
 [[nodiscard]] reference_halves path_traced(const host::scene_description<float>& scene, std::uint32_t samples,
-                                           std::size_t size);
+                                           std::size_t size, const aglow::callback<double>& progress = {});
 
 /// An audit of a finished picture at `target`, beside the truth that it did not know.
 [[nodiscard]] audit_note audit_run(const host::scene_description<float>& scene, const made_run& run, double target,

@@ -160,20 +160,33 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
+namespace {
+
+/// Decimals without the zeros at their end.
+std::string trimmed(std::string decimals) {
+    if (decimals.find('.') == std::string::npos) { return decimals; }
+    decimals.erase(decimals.find_last_not_of('0') + 1);
+    if (decimals.back() == '.') { decimals.pop_back(); }
+    return decimals;
+}
+
+}  // namespace
+
 std::string rounded(double x, int significant) {
     if (!aglow::is_finite(x)) { return "–"; }
     if (x == 0) { return "0"; }
     char digits[64];
     const double size = std::abs(x);
-    if (size < 1e-4 || size >= 1e6) {
-        return {digits, std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, significant).ptr};
+    if (size < 1e-3 || size >= 1e6) {
+        std::string out{
+            digits,
+            std::to_chars(digits, digits + sizeof digits, x, std::chars_format::scientific, significant - 1).ptr};
+        return trimmed(out.substr(0, out.find('e'))) + 'e' + std::to_string(std::stoi(out.substr(out.find('e') + 1)));
     }
     const int before = static_cast<int>(std::floor(std::log10(size))) + 1;
     const int after = std::max(0, significant - before);
     std::string out{digits, std::to_chars(digits, digits + sizeof digits, x, std::chars_format::fixed, after).ptr};
-    if (after > 0) { out.erase(out.find_last_not_of('0') + 1); }
-    if (!out.empty() && out.back() == '.') { out.pop_back(); }
-    return out;
+    return after > 0 ? trimmed(out) : out;
 }
 
 std::string series_colour(std::size_t i) {

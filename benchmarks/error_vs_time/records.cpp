@@ -81,7 +81,8 @@ json as_json(const scene_note& s) {
                         {"height", s.height},
                         {"reference", s.reference},
                         {"reference_relmse", s.reference_relmse},
-                        {"reference_mape", s.reference_mape}};
+                        {"reference_mape", s.reference_mape},
+                        {"reference_pictures", s.reference_pictures}};
 }
 
 json as_json(const run_note& r) {
@@ -136,8 +137,14 @@ number_pairs numbers_from(const json& value) {
 }
 
 scene_note scene_from(const json& j) {
-    return {j["name"].text(),      j["description"].text(),        size_of(j["width"]),         size_of(j["height"]),
-            j["reference"].text(), j["reference_relmse"].number(), j["reference_mape"].number()};
+    return {j["name"].text(),
+            j["description"].text(),
+            size_of(j["width"]),
+            size_of(j["height"]),
+            j["reference"].text(),
+            j["reference_relmse"].number(),
+            j["reference_mape"].number(),
+            static_cast<std::size_t>(j["reference_pictures"].number(1))};
 }
 
 run_note run_from(const json& j) {
@@ -198,6 +205,7 @@ std::string report_json(const study& all) {
                              {"title", all.title},
                              {"baseline", all.baseline},
                              {"provenance", as_json(all.provenance)},
+                             {"relmse_targets", json::list(all.relmse_targets.begin(), all.relmse_targets.end())},
                              {"scenes", as_list(all.scenes)},
                              {"runs", as_list(all.runs)},
                              {"parts", as_list(all.parts)},
@@ -217,6 +225,8 @@ study read_report(std::string_view json_text) {
     for (const auto& [name, value] : all["provenance"].members()) {
         result.provenance.emplace_back(name, value.text());
     }
+    if (!all["relmse_targets"].elements().empty()) { result.relmse_targets.clear(); }
+    for (const json& j : all["relmse_targets"].elements()) { result.relmse_targets.push_back(j.number()); }
     for (const json& j : all["scenes"].elements()) { result.scenes.push_back(scene_from(j)); }
     for (const json& j : all["runs"].elements()) { result.runs.push_back(run_from(j)); }
     for (const json& j : all["parts"].elements()) { result.parts.push_back(parts_from(j)); }

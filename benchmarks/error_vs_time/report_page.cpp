@@ -1,6 +1,10 @@
 #include "error_vs_time/report_page.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include <aglow/report/image_error.hpp>
+#include <aglow/report/statement.hpp>
 
 #include "error_vs_time/plot.hpp"
 #include "error_vs_time/png.hpp"
@@ -18,14 +22,14 @@ body { margin: 0 auto; max-width: 1320px; padding: 24px 28px 80px; background: v
        font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
 h1 { font-size: 28px; margin: 8px 0 4px; } h2 { font-size: 22px; margin: 44px 0 6px; } h3 { font-size: 16px; margin: 26px 0 8px; }
 p { margin: 4px 0 12px; max-width: 80ch; } .soft { color: var(--soft); }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(480px, 1fr)); gap: 16px; }
+.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(480px, 100%), 1fr)); gap: 16px; }
 svg.plot { width: 100%; height: auto; background: var(--paper); border: 1px solid var(--line); border-radius: 6px; }
 .scroll { overflow-x: auto; margin: 14px 0 22px; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13.5px; min-width: 480px; }
 caption { text-align: left; font-weight: 600; padding: 4px 0 6px; }
 th, td { padding: 4px 14px 4px 0; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th { color: var(--soft); font-weight: 600; border-bottom: 1px solid #b5b5ba; }
-th:first-child, td:first-child { text-align: left; } tbody tr:hover { background: var(--shade); }
+th.words, td.words { text-align: left; } tbody tr:hover { background: var(--shade); }
 .compare { display: flex; flex-wrap: wrap; gap: 10px 18px; align-items: center; margin: 6px 0 10px; }
 .compare select, .compare label { font: inherit; }
 .stage { position: relative; width: min(100%, 768px); border: 1px solid var(--line); user-select: none; touch-action: none;
@@ -34,7 +38,8 @@ th:first-child, td:first-child { text-align: left; } tbody tr:hover { background
 .stage .over { position: absolute; inset: 0; clip-path: inset(0 calc(100% - var(--cut)) 0 0); }
 .stage::after { content: ""; position: absolute; top: 0; bottom: 0; left: calc(var(--cut) - 1px); width: 2px; background: #fff;
                 box-shadow: 0 0 3px #000; pointer-events: none; }
-.strip { display: grid; grid-template-columns: repeat(auto-fill, minmax(190px, 1fr)); gap: 10px; margin: 16px 0; }
+.warning { border-left: 3px solid #d55e00; padding-left: 10px; }
+.strip { display: grid; align-items: end; grid-template-columns: repeat(auto-fill, minmax(190px, 1fr)); gap: 10px; margin: 16px 0; }
 figure { margin: 0; } figure img { width: 100%; image-rendering: pixelated; display: block; }
 figcaption { font-size: 12.5px; color: var(--soft); padding: 3px 0 5px; }
 pre { white-space: pre-wrap; background: var(--shade); padding: 10px 14px; border-radius: 6px; font-size: 13px; margin: 6px 0 14px; }
@@ -68,7 +73,7 @@ for (const box of document.querySelectorAll('.viewer')) {
 
 plot curves(const study& all, const std::string& scene, const metric& what) {
     plot result{.title = scene + ": " + what.name, .x_label = "CPU seconds", .y_label = what.name};
-    result.targets = what.targets;
+    result.targets = targets_of(all, what);
     const std::vector<std::string> methods = methods_of(all);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         plot_series series{.name = methods[i], .colour = series_colour(i)};
@@ -91,7 +96,7 @@ std::string plots(const study& all, const std::string& scene) {
 
 std::string figure(const picture_note& p, std::size_t index) {
     std::string out = "<figure data-index=\"" + std::to_string(index) + "\"><figcaption>" + escaped(p.method) +
-                      (p.caption.empty() ? "" : ", " + escaped(p.caption)) + "</figcaption><img alt=\"" +
+                      (p.caption.empty() ? "" : ": " + escaped(p.caption)) + "</figcaption><img alt=\"" +
                       escaped(p.method) + "\" src=\"" + png_uri(p.rgb, p.width, p.height) + "\">";
     if (!p.error_rgb.empty()) {
         out +=
@@ -135,35 +140,74 @@ std::string audits(const study& all, const std::string& scene) {
     return "<h3>Certificates</h3>" + out + "</details>\n";
 }
 
-std::string about(const scene_note& scene) {
-    return "<h2 id=\"" + escaped(scene.name) + "\">" + escaped(scene.name) + "</h2>\n<p>" + escaped(scene.description) +
-           ' ' + std::to_string(scene.width) + "×" + std::to_string(scene.height) +
-           " pixels. <span class=\"soft\">Reference: " + escaped(scene.reference) + "; its own noise is " +
-           rounded(scene.reference_relmse) + " as relMSE and " + rounded(100 * scene.reference_mape) +
-           " % as MAPE.</span></p>\n";
+/// The least error that a run of the scene has; infinite without runs.
+double lowest(const study& all, const std::string& scene, double aglow::image_error::*value) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const run_note& r : all.runs) {
+        if (r.scene == scene && r.error.*value > 0) { least = std::min(least, r.error.*value); }
+    }
+    return least;
+}
+
+/// Says where the reference's noise is more than a fifth of the lowest error measured against it.
+std::string warning(const study& all, const scene_note& scene) {
+    std::string out;
+    const auto check = [&](const char* name, double noise, double least) {
+        if (!(noise > 0.2 * least)) { return; }
+        out += "<p class=\"warning\">The reference's noise is more than a fifth of the lowest " + std::string{name} +
+               " here, " + rounded(least) + ": what is near that is partly the reference's.</p>\n";
+    };
+    if (scene.reference_pictures < 2) {
+        check("relMSE", scene.reference_relmse, lowest(all, scene.name, &aglow::image_error::relmse));
+    }
+    check("MAPE", scene.reference_mape, lowest(all, scene.name, &aglow::image_error::mape));
+    return out;
+}
+
+std::string about(const study& all, const scene_note& scene) {
+    std::string out = "<h2 id=\"" + escaped(scene.name) + "\">" + escaped(scene.name) + "</h2>\n<p>" +
+                      escaped(scene.description) + "; " + std::to_string(scene.width) + "×" +
+                      std::to_string(scene.height) +
+                      " pixels. <span class=\"soft\">Reference: " + escaped(scene.reference) + "; its own noise is " +
+                      rounded(scene.reference_relmse) + " as relMSE";
+    if (scene.reference_mape > 0) { out += " and " + aglow::percent(scene.reference_mape) + " as MAPE"; }
+    out += scene.reference_pictures < 2 ? ", and is part of all errors here"
+                                        : ", and is no part of relMSE, RMSE and bias²: its halves cancel there";
+    return out + ".</span></p>\n" + warning(all, scene);
+}
+
+std::string reading(const study& all) {
+    return "<p class=\"soft\">Times are interpolated between a seed's neighbouring runs, on logarithmic axes; &lt; and "
+           "&gt; "
+           "are limits, where a method was there from its first run or not by its last. ≈ carries " +
+           escaped(all.baseline) +
+           " on beyond its last run, as fast as its errors fell or as those of independent samples do, whichever is "
+           "faster. Intervals are 95 % bootstrap intervals over seeds; with three seeds they are hardly more than the "
+           "range.</p>\n";
 }
 
 std::string section(const study& all, const scene_note& scene) {
     const std::string& name = scene.name;
-    std::string out = about(scene) + plots(all, name) + "<h3>Time to an error</h3>";
+    std::string out = about(all, scene) + plots(all, name) + "<h3>Time to an error</h3>" + reading(all);
     for (const metric& what : metrics()) {
-        if (what.targets.empty()) { continue; }
+        if (targets_of(all, what).empty()) { continue; }
         out += html(times_to_targets(all, name, what)) + html(speed_ups(all, name, what));
     }
-    out += audits(all, name) + viewer(all, name) + "<h3>Errors</h3>" + html(final_errors(all, name)) +
-           html(slopes(all, name));
+    out += html(steps(all, name)) + audits(all, name) + viewer(all, name) + "<h3>Errors</h3>" +
+           html(final_errors(all, name)) + html(slopes(all, name));
     out += html(efficiencies(all, name)) + html(bias_and_variance(all, name));
     return out + "<h3>Where the time goes</h3>" + html(phase_times(all, name)) + html(work_done(all, name));
 }
 
 table provenance(const study& all) {
-    table result{.caption = "How this was made", .head = {"what", "value"}};
+    table result{.caption = "How this was made", .head = {"what", "value"}, .words = 2};
     for (const auto& [name, value] : all.provenance) { result.rows.push_back({name, value}); }
     return result;
 }
 
 table definitions() {
-    table result{.caption = "What the errors mean (I picture, R reference)", .head = {"error", "definition"}};
+    table result{
+        .caption = "What the errors mean (I picture, R reference)", .head = {"error", "definition"}, .words = 2};
     for (const metric& what : metrics()) { result.rows.push_back({what.name, what.formula}); }
     return result;
 }
@@ -195,10 +239,10 @@ std::string report_markdown(const study& all) {
     for (const scene_note& s : all.scenes) {
         out += "## " + s.name + "\n\n";
         for (const metric& what : metrics()) {
-            if (what.targets.empty()) { continue; }
+            if (targets_of(all, what).empty()) { continue; }
             out += markdown(times_to_targets(all, s.name, what)) + markdown(speed_ups(all, s.name, what));
         }
-        out += markdown(final_errors(all, s.name)) + markdown(certificates(all, s.name));
+        out += markdown(steps(all, s.name)) + markdown(final_errors(all, s.name)) + markdown(certificates(all, s.name));
     }
     return out + markdown(provenance(all));
 }

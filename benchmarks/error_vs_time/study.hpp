@@ -24,8 +24,9 @@ struct scene_note {
     std::size_t width{0};
     std::size_t height{0};
     std::string reference{};     ///< how the reference was made
-    double reference_relmse{0};  ///< noise of the reference that is left, as relMSE
-    double reference_mape{0};    ///< the same as MAPE
+    double reference_relmse{0};  ///< noise of the reference as relMSE; two halves of it leave none in squared errors
+    double reference_mape{0};    ///< the same as MAPE, which is always left; 0 where it is not known
+    std::size_t reference_pictures{1};  ///< 2 where the reference was two halves of independent noise
 };
 
 /// One picture made with one seed.
@@ -82,6 +83,7 @@ struct picture_note {
 struct study {
     std::string title{};
     std::string baseline{};  ///< the method that all speed-ups are measured against
+    std::vector<double> relmse_targets{8e-3, 1.9e-3, 1.2e-3, 4.5e-4, 1.3e-4};
     text_pairs provenance{};
     std::vector<scene_note> scenes{};
     std::vector<run_note> runs{};
@@ -96,11 +98,14 @@ struct metric {
     const char* formula;
     double aglow::image_error::*value;
     bool squared;                 ///< falls as 1/time for independent samples, so 1/(error·time) is an efficiency
-    std::vector<double> targets;  ///< errors whose time is told
+    std::vector<double> targets;  ///< errors whose time is told; those of relMSE are a study's own
 };
 
 /// The measures in the order of their columns; the first two are drawn.
 [[nodiscard]] const std::vector<metric>& metrics();
+
+/// The errors whose time a study tells, largest first.
+[[nodiscard]] const std::vector<double>& targets_of(const study& all, const metric& what);
 
 /// Names of a study's methods in the order of their first run, the baseline first.
 [[nodiscard]] std::vector<std::string> methods_of(const study& all);

@@ -16,30 +16,65 @@ void for_each_run(const study& all, const std::string& scene, const std::string&
     }
 }
 
+/// One seed's errors in rising order of time.
+struct seed_curve {
+    std::vector<double> seconds{};
+    std::vector<double> errors{};
+};
+
+std::map<std::uint64_t, seed_curve> seed_curves(const study& all, const std::string& scene, const std::string& method,
+                                                const metric& what) {
+    std::map<std::uint64_t, std::vector<std::pair<double, double>>> points;
+    for_each_run(all, scene, method,
+                 [&](const run_note& run) { points[run.seed].emplace_back(run.cpu_seconds, run.error.*what.value); });
+    std::map<std::uint64_t, seed_curve> curves;
+    for (auto& [seed, of_seed] : points) {
+        std::sort(of_seed.begin(), of_seed.end());
+        for (const auto& [s, e] : of_seed) {
+            curves[seed].seconds.push_back(s);
+            curves[seed].errors.push_back(e);
+        }
+    }
+    return curves;
+}
+
 /// Where each seed's own curve crosses the target, in rising order of time; those that never do come last.
 std::vector<aglow::crossing> crossings(const study& all, const std::string& scene, const std::string& method,
                                        const metric& what, double target) {
-    std::map<std::uint64_t, std::vector<std::pair<double, double>>> curves;
-    for_each_run(all, scene, method,
-                 [&](const run_note& run) { curves[run.seed].emplace_back(run.cpu_seconds, run.error.*what.value); });
-    std::vector<aglow::crossing> found;
-    for (auto& [seed, points] : curves) {
-        std::sort(points.begin(), points.end());
-        std::vector<double> seconds;
-        std::vector<double> errors;
-        for (const auto& [s, e] : points) {
-            seconds.push_back(s);
-            errors.push_back(e);
-        }
-        found.push_back(aglow::time_to_error(seconds, errors, target));
-    }
     using kind = aglow::crossing::kind;
+    std::vector<aglow::crossing> found;
+    for (const auto& [seed, points] : seed_curves(all, scene, method, what)) {
+        found.push_back(aglow::time_to_error(points.seconds, points.errors, target));
+    }
     std::sort(found.begin(), found.end(), [](const aglow::crossing& a, const aglow::crossing& b) {
         const bool a_never = a.when == kind::never;
         const bool b_never = b.when == kind::never;
         return a_never != b_never ? b_never : a.time < b.time;
     });
     return found;
+}
+
+/// The median of crossings in order, or the limit that is known of it.
+aglow::crossing middle_of(const std::vector<aglow::crossing>& found) {
+    using kind = aglow::crossing::kind;
+    const aglow::crossing& a = found[(found.size() - 1) / 2];
+    const aglow::crossing& b = found[found.size() / 2];
+    if (b.when != kind::never) { return {a.when, (a.time + b.time) / 2}; }
+    return {kind::never, ((a.when == kind::before ? 0 : a.time) + b.time) / 2};
+}
+
+/// The exponent by which the baseline is carried on.
+double baseline_exponent(const study& all, const std::string& scene, const metric& what) {
+    const double independent = what.squared ? -1 : -0.5;
+    const auto fit = slope(all, scene, all.baseline, what);
+    return fit ? std::min(fit->slope, independent) : independent;
+}
+
+/// When the baseline's curve meets the target, carried on beyond its end.
+double carried_to(const seed_curve& points, double target, double exponent) {
+    const aglow::crossing found = aglow::time_to_error(points.seconds, points.errors, target);
+    if (found.when != aglow::crossing::kind::never || points.errors.empty()) { return found.time; }
+    return found.time * std::pow(target / points.errors.back(), 1 / exponent);
 }
 
 }  // namespace
@@ -65,7 +100,7 @@ std::optional<aglow::line_fit> slope(const study& all, const std::string& scene,
     });
     if (seconds.empty()) { return std::nullopt; }
     const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
-    if (!(*least < *most)) { return std::nullopt; }
+    if (!(2 * *least <= *most)) { return std::nullopt; }
     return aglow::fit_slope(seconds, errors);
 }
 
@@ -73,7 +108,7 @@ time_to time_to_target(const study& all, const std::string& scene, const std::st
                        double target) {
     const std::vector<aglow::crossing> found = crossings(all, scene, method, what, target);
     if (found.empty()) { return {}; }
-    time_to result{.median = found[(found.size() - 1) / 2]};
+    time_to result{.median = middle_of(found)};
     for (const aglow::crossing& c : found) {
         if (c.when != aglow::crossing::kind::at) { return result; }
         result.seconds.push_back(c.time);
@@ -83,6 +118,19 @@ time_to time_to_target(const study& all, const std::string& scene, const std::st
         return aglow::median(aglow::pick(result.seconds, indices));
     });
     return result;
+}
+
+std::optional<double> carried_on(const study& all, const std::string& scene, const metric& what, double target) {
+    if (time_to_target(all, scene, all.baseline, what, target).median.when != aglow::crossing::kind::never) {
+        return std::nullopt;
+    }
+    const double exponent = baseline_exponent(all, scene, what);
+    std::vector<double> seconds;
+    for (const auto& [seed, points] : seed_curves(all, scene, all.baseline, what)) {
+        seconds.push_back(carried_to(points, target, exponent));
+    }
+    if (seconds.empty()) { return std::nullopt; }
+    return aglow::median(seconds);
 }
 
 std::optional<speed_up> speed_up_to_target(const study& all, const std::string& scene, const std::string& method,
@@ -102,9 +150,39 @@ std::optional<speed_up> speed_up_to_target(const study& all, const std::string& 
         }
         return result;
     }
-    if (no_less) { return speed_up{.sign = '>', .estimate = ratio}; }
     if (no_more) { return speed_up{.sign = '<', .estimate = ratio}; }
-    return std::nullopt;
+    if (!no_less) { return std::nullopt; }
+    speed_up result{.sign = '>', .estimate = ratio};
+    const auto longer = carried_on(all, scene, what, target);
+    if (longer && fast.median.when == kind::at) { result.about = *longer / fast.median.time; }
+    return result;
+}
+
+std::optional<equal_error> at_equal_error(const study& all, const std::string& scene, const std::string& method,
+                                          std::size_t budget, const metric& what) {
+    if (method == all.baseline) { return std::nullopt; }
+    const auto baseline = seed_curves(all, scene, all.baseline, what);
+    const double exponent = baseline_exponent(all, scene, what);
+    equal_error result;
+    std::vector<double> seconds;
+    std::vector<double> ratios;
+    for_each_run(all, scene, method, [&](const run_note& run) {
+        const auto same_seed = baseline.find(run.seed);
+        const double error = run.error.*what.value;
+        if (run.budget != budget || same_seed == baseline.end() || !(error > 0 && run.cpu_seconds > 0)) { return; }
+        const seed_curve& points = same_seed->second;
+        const auto when = aglow::time_to_error(points.seconds, points.errors, error).when;
+        if (when == aglow::crossing::kind::before) { result.sign = '<'; }
+        if (when == aglow::crossing::kind::never && result.sign == '=') { result.sign = '~'; }
+        seconds.push_back(carried_to(points, error, exponent));
+        ratios.push_back(seconds.back() / run.cpu_seconds);
+    });
+    if (seconds.empty()) { return std::nullopt; }
+    result.baseline_seconds = aglow::median(seconds);
+    result.ratio = aglow::bootstrap(ratios.size(), [&](std::span<const std::size_t> indices) {
+        return aglow::median(aglow::pick(ratios, indices));
+    });
+    return result;
 }
 
 }  // namespace error_vs_time

@@ -22,11 +22,12 @@ std::string target_name(const metric& what, double target) {
 
 std::string between(double low, double high) { return " (" + rounded(low) + " … " + rounded(high) + ")"; }
 
-std::string told(const time_to& time) {
-    switch (time.median.when) {
-        case aglow::crossing::kind::before: return "< " + rounded(time.median.time);
-        case aglow::crossing::kind::never: return time.median.time > 0 ? "> " + rounded(time.median.time) : dash;
-        default: break;
+std::string told(const time_to& time, const std::optional<double>& longer) {
+    using kind = aglow::crossing::kind;
+    if (time.median.when == kind::before) { return "< " + rounded(time.median.time); }
+    if (time.median.when == kind::never) {
+        if (!(time.median.time > 0)) { return dash; }
+        return "> " + rounded(time.median.time) + (longer ? " (≈ " + rounded(*longer) + ")" : "");
     }
     return rounded(time.median.time) + (time.interval ? between(time.interval->low, time.interval->high) : "");
 }
@@ -34,7 +35,7 @@ std::string told(const time_to& time) {
 std::string told(const std::optional<speed_up>& ratio) {
     if (!ratio) { return dash; }
     const std::string sign = ratio->sign == '=' ? "" : std::string{ratio->sign} + ' ';
-    return sign + rounded(ratio->estimate) + "×" +
+    return sign + rounded(ratio->estimate) + "×" + (ratio->about ? " (≈ " + rounded(*ratio->about) + "×)" : "") +
            (ratio->interval ? between(ratio->interval->low, ratio->interval->high) : "");
 }
 
@@ -46,6 +47,13 @@ std::vector<std::string> methods_in(const study& all, const std::string& scene) 
         if (ran) { names.push_back(method); }
     }
     return names;
+}
+
+std::string settings_of(const study& all, const std::string& scene, const std::string& method, std::size_t budget) {
+    const auto found = std::find_if(all.runs.begin(), all.runs.end(), [&](const run_note& r) {
+        return r.scene == scene && r.method == method && r.budget == budget;
+    });
+    return found == all.runs.end() ? dash : found->settings;
 }
 
 /// The runs of a method's largest budget.
@@ -73,25 +81,41 @@ double value_of(const number_pairs& pairs, const std::string& name) {
     return found == pairs.end() ? 0 : found->second;
 }
 
+/// The names in a scene's last runs, in the order of the run that has most of them.
+std::vector<std::string> names_in(const study& all, const std::string& scene, number_pairs run_note::*pairs) {
+    std::vector<const number_pairs*> lists;
+    for (const std::string& method : methods_in(all, scene)) {
+        for (const run_note* r : final_runs(all, scene, method)) { lists.push_back(&(r->*pairs)); }
+    }
+    std::stable_sort(lists.begin(), lists.end(),
+                     [](const number_pairs* a, const number_pairs* b) { return a->size() > b->size(); });
+    std::vector<std::string> names;
+    for (const number_pairs* list : lists) {
+        for (const auto& [name, value] : *list) {
+            if (std::find(names.begin(), names.end(), name) == names.end()) { names.push_back(name); }
+        }
+    }
+    return names;
+}
+
+/// Seconds, or a count: thousands and millions by their letters.
+std::string amount(double value) {
+    if (value == 0) { return dash; }
+    if (value >= 1e6) { return rounded(value / 1e6) + " M"; }
+    return value >= 1e4 ? rounded(value / 1e3) + " k" : rounded(value);
+}
+
 /// One row a method, one cell a name; the first cells come from `first`.
 table by_name(const study& all, const std::string& scene, number_pairs run_note::*pairs, table start,
               double run_note::*first, double first_scale) {
-    std::vector<std::string> names;
-    for (const std::string& method : methods_in(all, scene)) {
-        for (const run_note* r : final_runs(all, scene, method)) {
-            for (const auto& [name, value] : r->*pairs) {
-                if (std::find(names.begin(), names.end(), name) == names.end()) { names.push_back(name); }
-            }
-        }
-    }
+    const std::vector<std::string> names = names_in(all, scene, pairs);
     start.head.insert(start.head.end(), names.begin(), names.end());
     for (const std::string& method : methods_in(all, scene)) {
         const auto runs = final_runs(all, scene, method);
         std::vector<std::string> row{method};
         row.push_back(rounded(median_of(runs, [&](const run_note& r) { return first_scale * r.*first; })));
         for (const std::string& name : names) {
-            const double value = median_of(runs, [&](const run_note& r) { return value_of(r.*pairs, name); });
-            row.push_back(value == 0 ? dash : rounded(value));
+            row.push_back(amount(median_of(runs, [&](const run_note& r) { return value_of(r.*pairs, name); })));
         }
         start.rows.push_back(std::move(row));
     }
@@ -103,11 +127,12 @@ table by_name(const study& all, const std::string& scene, number_pairs run_note:
 table times_to_targets(const study& all, const std::string& scene, const metric& what) {
     table result{.caption = std::string{"CPU seconds to "} + what.name + ", median over seeds and 95 % interval"};
     result.head = {"method"};
-    for (const double target : what.targets) { result.head.push_back(target_name(what, target)); }
+    for (const double target : targets_of(all, what)) { result.head.push_back(target_name(what, target)); }
     for (const std::string& method : methods_in(all, scene)) {
         std::vector<std::string> row{method};
-        for (const double target : what.targets) {
-            row.push_back(told(time_to_target(all, scene, method, what, target)));
+        for (const double target : targets_of(all, what)) {
+            const auto longer = method == all.baseline ? carried_on(all, scene, what, target) : std::nullopt;
+            row.push_back(told(time_to_target(all, scene, method, what, target), longer));
         }
         result.rows.push_back(std::move(row));
     }
@@ -117,14 +142,41 @@ table times_to_targets(const study& all, const std::string& scene, const metric&
 table speed_ups(const study& all, const std::string& scene, const metric& what) {
     table result{.caption = "Times faster than " + all.baseline + " to " + what.name + ", and 95 % interval"};
     result.head = {"method"};
-    for (const double target : what.targets) { result.head.push_back(target_name(what, target)); }
+    for (const double target : targets_of(all, what)) { result.head.push_back(target_name(what, target)); }
     for (const std::string& method : methods_in(all, scene)) {
         if (method == all.baseline) { continue; }
         std::vector<std::string> row{method};
-        for (const double target : what.targets) {
+        for (const double target : targets_of(all, what)) {
             row.push_back(told(speed_up_to_target(all, scene, method, what, target)));
         }
         result.rows.push_back(std::move(row));
+    }
+    return result;
+}
+
+table steps(const study& all, const std::string& scene) {
+    const metric& mape = metrics()[0];
+    const metric& relmse = metrics()[1];
+    table result{.caption = "Every step, medians over seeds, beside what " + all.baseline +
+                            " takes to the same relMSE (≈ where carried on beyond its last run)",
+                 .words = 2};
+    result.head = {"method",      "settings", "CPU s", "MAPE", "relMSE", "5 … 95 %", all.baseline + " takes",
+                   "times faster"};
+    for (const std::string& method : methods_in(all, scene)) {
+        const auto relative = curve(all, scene, method, mape);
+        const auto squared = curve(all, scene, method, relmse);
+        for (std::size_t i = 0; i < squared.size(); ++i) {
+            const aglow::convergence_row& r = squared[i];
+            const auto equal = at_equal_error(all, scene, method, r.budget, relmse);
+            const std::string sign = !equal || equal->sign == '=' ? "" : equal->sign == '~' ? "≈ " : "< ";
+            result.rows.push_back(
+                {method, settings_of(all, scene, method, r.budget), rounded(r.seconds),
+                 aglow::percent(relative[i].error), rounded(r.error),
+                 rounded(r.error_low) + " … " + rounded(r.error_high),
+                 equal ? sign + rounded(equal->baseline_seconds) : dash,
+                 equal ? sign + rounded(equal->ratio.estimate) + "×" + between(equal->ratio.low, equal->ratio.high)
+                       : dash});
+        }
     }
     return result;
 }
@@ -168,12 +220,12 @@ table efficiencies(const study& all, const std::string& scene) {
 
 table final_errors(const study& all, const std::string& scene) {
     table result{.caption = "Errors at each method's largest budget, medians over seeds"};
-    result.head = {"method", "settings", "CPU s"};
+    result.head = {"method", "CPU s"};
     for (const metric& what : metrics()) { result.head.push_back(what.name); }
     result.head.push_back("broken pixels");
     for (const std::string& method : methods_in(all, scene)) {
         const auto runs = final_runs(all, scene, method);
-        std::vector<std::string> row{method, runs.front()->settings};
+        std::vector<std::string> row{method};
         row.push_back(rounded(median_of(runs, [](const run_note& r) { return r.cpu_seconds; })));
         for (const metric& what : metrics()) {
             const double value = median_of(runs, [&](const run_note& r) { return r.error.*what.value; });
@@ -213,7 +265,8 @@ table work_done(const study& all, const std::string& scene) {
 }
 
 table certificates(const study& all, const std::string& scene) {
-    table result{.caption = "Audits beside the truth they could not know (mean relative error; energy bias)"};
+    table result{.caption = "Audits beside the truth they could not know (mean relative error; energy bias)",
+                 .words = 2};
     result.head = {"method",        "status",    "target",  "bound",    "true error",
                    "bias interval", "true bias", "audit s", "of render"};
     for (const audit_note& a : all.audits) {

@@ -8,11 +8,14 @@
 
 namespace error_vs_time {
 
-/// CPU seconds to the metric's targets, median over seeds and 95 % bootstrap interval.
+/// CPU seconds to the metric's targets, median over seeds and 95 % bootstrap interval; the baseline's also carried on.
 [[nodiscard]] table times_to_targets(const study& all, const std::string& scene, const metric& what);
 
 /// Speed-up over the baseline at the metric's targets, with its bootstrap interval.
 [[nodiscard]] table speed_ups(const study& all, const std::string& scene, const metric& what);
+
+/// Every step of every method, beside the baseline's time to the same relMSE.
+[[nodiscard]] table steps(const study& all, const std::string& scene);
 
 /// Exponents of every metric over CPU seconds, with standard errors.
 [[nodiscard]] table slopes(const study& all, const std::string& scene);

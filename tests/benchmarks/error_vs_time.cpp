@@ -10,12 +10,14 @@
 #include "benchmarks/synthetic_study.hpp"
 #include "error_vs_time/gate.hpp"
 #include "error_vs_time/json.hpp"
+#include "error_vs_time/options.hpp"
 #include "error_vs_time/plot.hpp"
 #include "error_vs_time/png.hpp"
 #include "error_vs_time/records.hpp"
 #include "error_vs_time/report_page.hpp"
 #include "error_vs_time/summary.hpp"
 #include "error_vs_time/tables.hpp"
+#include "error_vs_time/work_left.hpp"
 #include "support/catch.hpp"
 
 using namespace error_vs_time;
@@ -67,6 +69,71 @@ TEST_CASE("study: what lies beyond the ends of the curves is told as a limit") {
     CHECK(!speed_up_to_target(all, "box", "not there", mape(), 0.10));
 }
 
+TEST_CASE("study: with two seeds of which one gets there, the median lies between that and the other's last run") {
+    study two{.title = "two seeds", .baseline = "path"};
+    const auto add = [&](std::uint64_t seed, double seconds, double error) {
+        run_note r{.scene = "box", .method = "path", .seed = seed, .cpu_seconds = seconds};
+        r.error.mape = error;
+        two.runs.push_back(r);
+    };
+    add(1, 1, 0.2);
+    add(1, 4, 0.1);
+    add(2, 1, 0.4);
+    add(2, 6, 0.2);
+    const auto at_tenth = time_to_target(two, "box", "path", mape(), 0.1).median;
+    CHECK(at_tenth.when == aglow::crossing::kind::never);
+    CHECK(at_tenth.time == 5);
+    const auto at_fifth = time_to_target(two, "box", "path", mape(), 0.2).median;
+    CHECK(at_fifth.when == aglow::crossing::kind::before);
+    CHECK(at_fifth.time == 3.5);
+}
+
+TEST_CASE("study: the baseline carried on beyond its last run follows its law, and is told as about") {
+    const study all = synthetic::study(0.02);
+    const double seconds = std::pow(0.20 / 0.01, 2);  // its last run takes 16
+    const auto longer = carried_on(all, "box", mape(), 0.01);
+    REQUIRE(longer);
+    CHECK(*longer == Approx(seconds).epsilon(0.06));
+    CHECK(!carried_on(all, "box", mape(), 0.09));
+    const double cache_seconds = std::pow(0.02 / (0.01 - 0.004), 2);
+    const auto ratio = speed_up_to_target(all, "box", "irradiance-cache", mape(), 0.01);
+    // That cache's own floor lets it not get there, nor is anything claimed of it.
+    CHECK((cache_seconds > 6.4 && !ratio));
+    const auto gathered = speed_up_to_target(all, "box", "gather-cache", mape(), 0.01);
+    REQUIRE(gathered);
+    CHECK(gathered->sign == '>');
+    CHECK(gathered->estimate == Approx(16).epsilon(0.1));
+    REQUIRE(gathered->about);
+    CHECK(*gathered->about == Approx(seconds).epsilon(0.1));  // one second for the gather cache
+}
+
+TEST_CASE("study: a baseline that falls slower than independent samples is not carried on as slowly") {
+    study all = synthetic::study(0);
+    for (run_note& r : all.runs) {
+        if (r.method == "path") { r.error.mape = 0.2 * std::pow(r.cpu_seconds, -0.25); }
+    }
+    const double last = 16;
+    CHECK(*carried_on(all, "box", mape(), 0.01) == Approx(last * std::pow(0.1 / 0.01, 2)).epsilon(0.1));
+}
+
+TEST_CASE("study: every step is told beside the baseline's time to the same error, measured or carried on") {
+    const study all = synthetic::study(0.02);
+    for (const std::size_t budget : {0u, 6u}) {
+        const double t = 0.1 * std::pow(2.0, static_cast<double>(budget));
+        const double path_seconds = std::pow(0.20 / (0.004 + 0.02 / std::sqrt(t)), 2);
+        const auto equal = at_equal_error(all, "box", "irradiance-cache", budget, relmse());
+        REQUIRE(equal);
+        CHECK(equal->sign == (path_seconds > 16 ? '~' : '='));
+        CHECK(equal->baseline_seconds == Approx(path_seconds).epsilon(0.08));
+        CHECK(equal->ratio.low <= path_seconds / t);
+        CHECK(equal->ratio.high >= path_seconds / t);
+    }
+    CHECK(!at_equal_error(all, "box", "path", 0, relmse()));
+    const table every = steps(all, "box");
+    CHECK(every.rows.size() == 7 * synthetic::laws().size());
+    for (const auto& row : every.rows) { CHECK(row.size() == every.head.size()); }
+}
+
 TEST_CASE("curve: pure variance has a flat efficiency, and a floor a falling one") {
     const study all = synthetic::study();
     const auto path = curve(all, "box", "path", relmse());
@@ -108,6 +175,8 @@ TEST_CASE("report.json: a study comes back as it was, seeds of 64 bits included"
     CHECK(again.runs[3].seed == all.runs[3].seed);
     CHECK(again.runs[5].error.relmse == all.runs[5].error.relmse);
     CHECK(again.parts[2].parts.variance == all.parts[2].parts.variance);
+    CHECK(again.relmse_targets == all.relmse_targets);
+    CHECK(again.scenes[0].reference_pictures == all.scenes[0].reference_pictures);
     CHECK_THROWS_WITH(read_report("{}"), "not a report of error_vs_time");
     std::string later = text;
     later.replace(later.find("\"version\": 1"), 12, "\"version\": 9");
@@ -168,7 +237,10 @@ TEST_CASE("rounded: three digits, no exponent where people would not write one")
     CHECK(rounded(1234.6) == "1235");
     CHECK(rounded(100) == "100");
     CHECK(rounded(-2.50) == "-2.5");
-    CHECK(rounded(1.23456e-7) == "1.23e-07");
+    CHECK(rounded(0.000279) == "2.79e-4");
+    CHECK(rounded(1.23456e-7) == "1.23e-7");
+    CHECK(rounded(-1.5e-12) == "-1.5e-12");
+    CHECK(rounded(1.5e7) == "1.5e7");
     CHECK(rounded(std::nan("")) == "–");
 }
 
@@ -197,6 +269,24 @@ TEST_CASE("a scene's curves: an SVG file that needs no page around it, with ever
     CHECK(count(file, "class=\"curve\"") == synthetic::laws().size());
     CHECK(file.find(".curve {") != std::string::npos);
     CHECK(report_svg({.title = "nothing"}, "box", metrics()[1]).find("nothing to draw") != std::string::npos);
+}
+
+TEST_CASE("report.html: a reference whose noise is more than a fifth of the lowest error is said to be so") {
+    study all = synthetic::study();
+    const auto warnings = [&](double relmse_noise, double mape_noise, std::size_t pictures) {
+        for (scene_note& s : all.scenes) {
+            s.reference_relmse = relmse_noise;
+            s.reference_mape = mape_noise;
+            s.reference_pictures = pictures;
+        }
+        return count(report_html(all), "class=\"warning\"");
+    };
+    double least = 1;
+    for (const run_note& r : all.runs) { least = std::min(least, r.error.relmse); }
+    CHECK(warnings(0.15 * least, 0, 1) == 0);
+    CHECK(warnings(0.5 * least, 0, 1) == 2);
+    CHECK(warnings(0.5 * least, 0, 2) == 0);  // two halves: that noise is no part of relMSE
+    CHECK(warnings(0.5 * least, 0.01, 2) == 2);
 }
 
 TEST_CASE("report.html: an empty study is a page too") {
@@ -244,7 +334,7 @@ TEST_CASE("gate: ten per cent slower and ten per cent wronger are found, and nam
     const auto slower = differences(before, synthetic::study(0.02, 1.1, 1, 2));
     const auto wronger = differences(before, synthetic::study(0.02, 1, 1.1, 2));
     const auto better = differences(before, synthetic::study(0.02, 0.9, 0.9, 2));
-    CHECK(slower.size() == 2 * 4 * 7 * 3);
+    CHECK(slower.size() == 2 * 4 * (7 + 1) * 3);
     CHECK(worse(slower));
     CHECK(worse(wronger));
     CHECK(!worse(better));
@@ -255,6 +345,75 @@ TEST_CASE("gate: ten per cent slower and ten per cent wronger are found, and nam
     CHECK(told(wronger).find("WORSE   ") == 0);
     CHECK(differences(before, before).front().p_value == 1);
     CHECK(differences(before, study{}).empty());
+}
+
+TEST_CASE("gate: three seeds are enough to find a tenth more time or error in all steps of a method together") {
+    const study before = synthetic::study(0.02, 1, 1, 1, 3);
+    for (const study& after : {synthetic::study(0.02, 1.1, 1, 2, 3), synthetic::study(0.02, 1, 1.1, 2, 3)}) {
+        const auto found = differences(before, after);
+        CHECK(worse(found));
+        const auto said = told(found);
+        CHECK(count(said, "WORSE") >= 2 * synthetic::laws().size());
+        CHECK(said.find("all steps") != std::string::npos);
+    }
+    CHECK(!worse(differences(before, synthetic::study(0.02, 1, 1, 2, 3))));
+}
+
+TEST_CASE("gate: what got lost is named, and what else is not alike") {
+    const study before = synthetic::study();
+    CHECK(losses(before, before).empty());
+    CHECK(unlike(before, before).empty());
+    study after = before;
+    after.runs[9].error.broken = 5;
+    const std::string lost_scene = after.runs.back().scene;
+    std::erase_if(after.runs, [&](const run_note& r) {
+        return r.scene == lost_scene || (r.method == "photon-map" && r.budget == 6);
+    });
+    after.provenance[0].second = "another";
+    const auto lost = losses(before, after);
+    REQUIRE(lost.size() == 1 + 8);
+    CHECK(std::find(lost.begin(), lost.end(), "box, path, step 2, seed 1: 5 broken pixels, 0 before") != lost.end());
+    CHECK(std::find(lost.begin(), lost.end(), "box, photon-map, step 7, seed 0: not in the second report") !=
+          lost.end());
+    CHECK(unlike(before, after) ==
+          std::vector<std::string>{"compiler: none before, now another", lost_scene + ": not in the second report"});
+    CHECK(unlike(after, before).back() == lost_scene + ": not in the first report");
+}
+
+TEST_CASE("options: what is asked for is taken, wrong words are named") {
+    using words = std::vector<std::string_view>;
+    CHECK(parse(words{}).size == 256);
+    const options some = parse(
+        words{"--scene", "a", "--seeds", "4", "--scene", "b", "--scene", "a", "--relmse", "1e-4,1e-2", "-o", "x"});
+    CHECK(some.scenes == std::vector<std::string>{"a", "b"});
+    CHECK(some.seeds == 4);
+    CHECK(some.relmse_targets == std::vector<double>{1e-2, 1e-4});
+    CHECK(some.output == "x");
+    CHECK(parse(words{"--seeds", "3", "--full"}).seeds == 3);
+    CHECK(parse(words{"--full"}).seeds == 8);
+    CHECK(parse(words{"--full"}).scenes.size() == 5);
+    CHECK(parse(words{"--scene", "a", "--smoke"}).scenes == std::vector<std::string>{"a"});
+    CHECK(parse(words{"--smoke", "--help"}).help);
+    for (const words& wrong : {words{"--size"}, words{"--size", "256x256"}, words{"--size", "-8"}, words{"--size", "0"},
+                               words{"--seeds", "1"}, words{"--relmse", "1e-3,"}, words{"--relmse", "-1"},
+                               words{"--full", "--smoke"}, words{"--speed"}}) {
+        CAPTURE(wrong.front());
+        CHECK_THROWS_AS(parse(wrong), std::invalid_argument);
+    }
+    CHECK_THROWS_WITH(parse(words{"--size", "3x"}), "--size wants a whole number from 8 to 4096, not \"3x\"");
+}
+
+TEST_CASE("work left: what is spared takes no time, and the rest as long as what was done for its cost") {
+    work_left left;
+    left.expect(10);
+    left.expect(30);
+    CHECK(!left.known());
+    left.spared(10);
+    left.did(6, 3);
+    CHECK(left.known());
+    CHECK(left.seconds() == Approx(12));
+    left.did(24, 12);
+    CHECK(left.seconds() == 0);
 }
 
 #ifdef AGLOW_CHROMIUM

@@ -1,0 +1,91 @@
+#include "error_vs_time/provenance.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+
+#include <aglow/core/version.hpp>
+
+#include "error_vs_time/commit.hpp"
+
+namespace error_vs_time {
+
+namespace {
+
+constexpr const char* when = "begun";
+constexpr const char* load = "load of the machine then";
+
+/// What follows the colon in the first line of a file that begins so.
+std::string first_line_of(const char* file, const std::string& start) {
+    std::ifstream in{file};
+    for (std::string line; std::getline(in, line);) {
+        if (line.rfind(start, 0) == 0) { return line.substr(line.find(':') + 2); }
+    }
+    return "unknown";
+}
+
+std::string now() {
+    const std::time_t seconds = std::time(nullptr);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", std::gmtime(&seconds));
+    return text;
+}
+
+/// Mean number of running programs over the last minute, where the system tells.
+std::string host_load() {
+    std::string minute;
+    std::ifstream{"/proc/loadavg"} >> minute;
+    return minute.empty() ? "unknown" : minute;
+}
+
+/// Tells one build of this program from another (FNV-1a of its file): a commit does not, while it is being worked on.
+std::string fingerprint() {
+    std::ifstream own{"/proc/self/exe", std::ios::binary};
+    std::uint64_t sum = 0xcbf29ce484222325u;
+    for (std::istreambuf_iterator<char> at{own}, end; at != end; ++at) {
+        sum = (sum ^ static_cast<unsigned char>(*at)) * 0x100000001b3u;
+    }
+    char text[20];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(sum));
+    return text;
+}
+
+std::string library() {
+    return "aglow " + std::to_string(aglow::version.major) + '.' + std::to_string(aglow::version.minor) + '.' +
+           std::to_string(aglow::version.patch);
+}
+
+}  // namespace
+
+text_pairs provenance(std::size_t seeds, std::size_t size, std::size_t reference_samples) {
+#ifdef __clang__
+    const std::string compiler = __VERSION__;
+#else
+    const std::string compiler = std::string{"GCC "} + __VERSION__;
+#endif
+    const std::string side = std::to_string(size);
+    return {{"library", library()},
+            {"commit", commit},
+            {"fingerprint of the program", fingerprint()},
+            {"compiler", compiler},
+            {"flags", AGLOW_COMPILED_WITH},
+            {"processor", first_line_of("/proc/cpuinfo", "model name")},
+            {"threads", "1; 2 or more for references that were made here"},
+            {"seeds", "1 … " + std::to_string(seeds) + "; 90001 and 90002 for references that were made here"},
+            {"size", side + " x " + side},
+            {"samples of references made here", "2 x " + std::to_string(reference_samples) + " a pixel"},
+            {when, now()},
+            {load, host_load()}};
+}
+
+bool same_making(const text_pairs& a, const text_pairs& b) {
+    const auto lasting = [](text_pairs pairs) {
+        std::erase_if(pairs, [](const auto& pair) { return pair.first == when || pair.first == load; });
+        return pairs;
+    };
+    return lasting(a) == lasting(b);
+}
+
+}  // namespace error_vs_time
