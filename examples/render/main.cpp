@@ -71,6 +71,7 @@ int run(int count, const char* const* words) {
     }
     expect_writable(options->output);
     host::render_result result = render(*options);
+    result.notes.insert(result.notes.begin(), options->unused.begin(), options->unused.end());
     result.add_fact("rays", host::ray_count::all_nearest());
     result.add_fact("shadow rays", host::ray_count::all_shadow());
     result.add_bytes("memory at most", host::peak_memory());

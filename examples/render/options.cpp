@@ -1,9 +1,14 @@
 #include "render/options.hpp"
 
 #include <charconv>
+#include <cstdint>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <sstream>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -72,6 +77,17 @@ CLI::Validator between(double low, double high) {
     return {refuse, ""};
 }
 
+/// Refuses what is not a whole number from `low` to `high`.
+CLI::Validator whole(std::uint64_t low, std::uint64_t high) {
+    const auto refuse = [low, high](std::string& text) -> std::string {
+        std::uint64_t n = 0;
+        const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), n);
+        if (wrong == std::errc{} && end == text.data() + text.size() && n >= low && n <= high) { return {}; }
+        return text + " is not a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    };
+    return {refuse, ""};
+}
+
 /// The first line of what CLI11 complains of.
 std::string one_line(std::string text) {
     const std::size_t end = text.find('\n');
@@ -84,14 +100,14 @@ void add_picture(CLI::App& app, render_options& o, std::string& size) {
     const auto add = [&app](const char* name, auto& into, const char* type, const char* what) {
         return app.add_option(name, into, what)->type_name(type)->group("The picture");
     };
-    add("--output", o.output, "FILE", "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
+    add("-o,--output", o.output, "FILE", "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
     add("--size", size, "WxH", "width x height in pixels [256x256]");
-    add("--spp", o.samples, "N", "samples per pixel [16]")->check(between(1, 1 << 24));
+    add("--spp", o.samples, "N", "samples per pixel [16]")->check(whole(1, 1 << 24));
     add("--time", o.seconds, "SECONDS", "as many samples as fit into so many seconds, preparation included")
         ->check(between(0.01, 1e7));
-    add("--seed", o.seed, "N", "another seed, other noise [0]")->check(between(0, 0x1p64));
-    add("--threads", o.threads, "N", "threads; the picture does not depend on them [all cores]")
-        ->check(between(1, 1024));
+    add("--seed", o.seed, "N", "another seed, other noise [0]")
+        ->check(whole(0, std::numeric_limits<std::uint64_t>::max()));
+    add("--threads", o.threads, "N", "threads; the picture does not depend on them [all cores]")->check(whole(1, 1024));
     add("--exposure", o.exposure, "FACTOR", "of the PNG [1]")->check(between(1e-6, 1e6));
 }
 
@@ -100,16 +116,17 @@ void add_method(CLI::App& app, render_options& o, std::string& how) {
         return app.add_option(name, into, what)->type_name(type)->group("How it is made");
     };
     add("--method", how, "NAME", "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
-    add("--caustic-photons", o.caustic_photons, "N", "wanted over mirrors and glass [200000]")->check(between(0, 4e9));
+    add("--caustic-photons", o.caustic_photons, "N", "wanted over mirrors and glass [200000]")
+        ->check(whole(0, 4'000'000'000));
     add("--indirect-photons", o.indirect_photons, "N", "wanted after a matte bounce [100000; photon-map 200000]")
-        ->check(between(0, 4e9));
+        ->check(whole(0, 4'000'000'000));
     add("--direct-photons", o.direct_photons, "N", "wanted straight from the lights [20000; photon-map 0]")
-        ->check(between(0, 4e9));
+        ->check(whole(0, 4'000'000'000));
     add("--estimate", o.photons_per_estimate, "N",
         "photons per estimate [" + std::to_string(aglow::density_options{}.count) + "]")
-        ->check(between(2, 100000));
+        ->check(whole(2, 100000));
     add("--gather-rays", o.gather_rays, "N", "rays of each cache record [350] or final gather [64]")
-        ->check(between(1, 1 << 20));
+        ->check(whole(1, 1 << 20));
     add("--accuracy", o.accuracy, "X", "of the irradiance cache: smaller is finer")->check(between(1e-4, 10.0));
 }
 
@@ -131,6 +148,47 @@ void add_questions(CLI::App& app, render_options& o, std::string& show, std::str
                  "two pictures by path tracing, --spp samples each, of independent noise: the EXR's own and its layer "
                  "`second`, in half floats")
         ->group(group);
+}
+
+/// What contradicts itself.
+void expect_consistent(const CLI::App& app, const render_options& o) {
+    if (o.reference &&
+        (app.count("--method") + app.count("--view") + app.count("--until") > 0 || o.layers || o.error)) {
+        throw usage_error(
+            "--reference makes one kind of picture: --method, --view, --layers, --until, --error do not go with it");
+    }
+    if (o.show != view::beauty && (o.error || o.until > 0)) {
+        throw usage_error("--error and --until are about the whole picture: --view " +
+                          app["--view"]->as<std::string>() + " does not go with them");
+    }
+    if (o.output.extension() != ".exr" && o.output.extension() != ".png") {
+        throw usage_error("--output " + o.output.string() + ": the name must end in .exr or .png");
+    }
+    if (o.output.extension() == ".png" && (o.layers || o.reference)) {
+        throw usage_error("--output " + o.output.string() +
+                          ": layers, and the second half of a reference, need a file that ends in .exr");
+    }
+}
+
+/// What was said and changes nothing.
+std::vector<std::string> unused(const CLI::App& app, const render_options& o) {
+    std::vector<std::string> notes;
+    const auto look = [&](const char* option, bool used, const std::string& why) {
+        if (!used && app.count(option) > 0) { notes.push_back(option + std::string{" is not used: "} + why); }
+    };
+    const bool caches = o.how == method::irradiance_cache || o.how == method::gather_cache;
+    const bool traces = !o.reference && o.how != method::path;  // photons, if only beside mirrors
+    const bool stores = traces && o.how != method::irradiance_cache;
+    const std::string by = o.reference ? "a reference" : "--method " + name_of(o.how);
+    look("--caustic-photons", traces, by + " has no photons");
+    look("--indirect-photons", stores, by + " has none of these photons");
+    look("--direct-photons", stores, by + " has none of these photons");
+    look("--estimate", traces, by + " has no photons");
+    look("--gather-rays", !o.reference && (caches || o.how == method::final_gather), by + " does not gather");
+    look("--accuracy", !o.reference && caches, by + " has no irradiance cache");
+    look("--spp", o.until == 0 && o.seconds == 0, o.until > 0 ? "--until decides" : "--time decides");
+    look("--layers", o.show == view::beauty, "--view shows one of them alone");
+    return notes;
 }
 
 }  // namespace
@@ -173,15 +231,9 @@ Status 0: a picture was written. 1: it failed on the way. 2: the wish makes no s
     o.show = chosen(views, "--view", show);
     if (!size.empty()) { read_size(size, o); }
     if (!until.empty()) { o.until = error_share(until); }
-    if (o.reference &&
-        (app.count("--method") + app.count("--view") + app.count("--until") > 0 || o.layers || o.error)) {
-        throw usage_error(
-            "--reference makes one kind of picture: --method, --view, --layers, --until, --error do not go with it");
-    }
     if (o.output.empty()) { o.output = std::filesystem::path{o.scene}.stem().string() + ".exr"; }
-    if (o.output.extension() != ".exr" && o.output.extension() != ".png") {
-        throw usage_error("--output " + o.output.string() + ": the name must end in .exr or .png");
-    }
+    expect_consistent(app, o);
+    o.unused = unused(app, o);
     return o;
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace host {
 
@@ -41,6 +42,8 @@ struct render_options {
     bool reference{false};
     bool list{false};
     float exposure{1};
+    /// What was said and changes nothing, a line each.
+    std::vector<std::string> unused{};
 };
 
 /// Reads the command line. Throws `usage_error` for what makes no sense; empty where help was asked for and given.

@@ -70,6 +70,27 @@ TEST_CASE("options: a picture is named after its scene, a model's without its fo
     CHECK(read({"models/bunny.ply"}).output == "bunny.exr");
 }
 
+TEST_CASE("options: -o is short for --output") { CHECK(read({"furnace", "-o", "x.png"}).output == "x.png"); }
+
+TEST_CASE("options: what changes nothing is said, and nothing else") {
+    const auto said = [](std::initializer_list<const char*> words) {
+        std::string all;
+        for (const std::string& line : read(words).unused) { all += line.substr(0, line.find(' ')) + ' '; }
+        return all;
+    };
+    CHECK(said({"furnace", "--spp", "4", "--gather-rays", "9", "--accuracy", "0.2", "--direct-photons", "5"}).empty());
+    CHECK(said({"furnace", "--method", "path", "--estimate", "9", "--gather-rays", "9"}) ==
+          "--estimate --gather-rays ");
+    CHECK(said({"furnace", "--method", "photon-map", "--accuracy", "1", "--gather-rays", "9"}) ==
+          "--gather-rays --accuracy ");
+    CHECK(said({"furnace", "--method", "irradiance-cache", "--caustic-photons", "9", "--indirect-photons", "9"}) ==
+          "--indirect-photons ");
+    CHECK(said({"furnace", "--time", "1", "--spp", "4"}) == "--spp ");
+    CHECK(said({"furnace", "--until", "5%", "--spp", "4"}) == "--spp ");
+    CHECK(said({"furnace", "--view", "direct", "--layers"}) == "--layers ");
+    CHECK(said({"furnace", "--reference", "--spp", "4", "--accuracy", "1"}) == "--accuracy ");
+}
+
 TEST_CASE("options: every wrong wish is one line that names it") {
     const std::vector<std::pair<std::string, std::string>> wrong{
         {complaint({"furnace", "--method", "magic"}), "magic"},
@@ -91,6 +112,13 @@ TEST_CASE("options: every wrong wish is one line that names it") {
         {complaint({"furnace", "--reference", "--method", "path"}), "--reference"},
         {complaint({"furnace", "--reference", "--layers"}), "--reference"},
         {complaint({"furnace", "--spp"}), "--spp"},
+        {complaint({"furnace", "--spp", "1.5"}), "1.5 is not a whole number from 1 to 16777216"},
+        {complaint({"furnace", "--spp", "1e3"}), "1e3"},
+        {complaint({"furnace", "--seed", "18446744073709551616"}), "18446744073709551616"},
+        {complaint({"furnace", "--view", "direct", "--until", "5%"}), "--view direct"},
+        {complaint({"furnace", "--view", "direct", "--error"}), "--view direct"},
+        {complaint({"furnace", "--layers", "-o", "x.png"}), "x.png"},
+        {complaint({"furnace", "--reference", "-o", "x.png"}), "x.png"},
         {complaint({}), "--list"},
     };
     for (const auto& [said, name] : wrong) {
