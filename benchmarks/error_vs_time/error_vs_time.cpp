@@ -77,11 +77,11 @@ struct rung {
 
 class runner {
 public:
-    explicit runner(const options& o) : options_{o}, scenes_{scenes_named(o.scenes)} {
+    runner(const options& o, const text_pairs& made_with) : options_{o}, scenes_{scenes_named(o.scenes)} {
         std::filesystem::create_directories(o.output / "pictures");
         study_.title = "aglow: error against run time";
         study_.baseline = "path tracing";
-        study_.provenance = provenance(o.seeds, o.size, o.reference_samples);
+        study_.provenance = made_with;
         if (!o.relmse_targets.empty()) { study_.relmse_targets = o.relmse_targets; }
         resume();
         plan();
@@ -301,12 +301,13 @@ private:
 
 int main(int count, char** arguments) {
     try {
-        const options asked = parse(std::vector<std::string_view>(arguments + 1, arguments + count));
+        const std::vector<std::string_view> words(arguments + 1, arguments + count);
+        const options asked = parse(words);
         if (asked.help) {
             std::fputs(usage.data(), stdout);
             return 0;
         }
-        runner{asked}.run();
+        runner{asked, provenance(asked, words)}.run();
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "error_vs_time: %s\n", error.what());

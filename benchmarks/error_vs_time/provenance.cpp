@@ -15,6 +15,7 @@ namespace error_vs_time {
 namespace {
 
 constexpr const char* when = "begun";
+constexpr const char* command = "command";
 constexpr const char* load = "load of the machine then";
 
 /// What follows the colon in the first line of a file that begins so.
@@ -59,13 +60,15 @@ std::string library() {
 
 }  // namespace
 
-text_pairs provenance(std::size_t seeds, std::size_t size, std::size_t reference_samples) {
+text_pairs provenance(const options& asked, const std::vector<std::string_view>& words) {
 #ifdef __clang__
     const std::string compiler = __VERSION__;
 #else
     const std::string compiler = std::string{"GCC "} + __VERSION__;
 #endif
-    const std::string side = std::to_string(size);
+    const std::string side = std::to_string(asked.size);
+    std::string line = "error_vs_time";
+    for (const std::string_view word : words) { line += ' ' + std::string{word}; }
     return {{"library", library()},
             {"commit", commit},
             {"fingerprint of the program", fingerprint()},
@@ -73,16 +76,18 @@ text_pairs provenance(std::size_t seeds, std::size_t size, std::size_t reference
             {"flags", AGLOW_COMPILED_WITH},
             {"processor", first_line_of("/proc/cpuinfo", "model name")},
             {"threads", "1; 2 or more for references that were made here"},
-            {"seeds", "1 … " + std::to_string(seeds) + "; 90001 and 90002 for references that were made here"},
+            {"seeds", "1 … " + std::to_string(asked.seeds) + "; 90001 and 90002 for references that were made here"},
             {"size", side + " x " + side},
-            {"samples of references made here", "2 x " + std::to_string(reference_samples) + " a pixel"},
+            {"samples of references made here", "2 x " + std::to_string(asked.reference_samples) + " a pixel"},
+            {command, line},
             {when, now()},
             {load, host_load()}};
 }
 
 bool same_making(const text_pairs& a, const text_pairs& b) {
     const auto lasting = [](text_pairs pairs) {
-        std::erase_if(pairs, [](const auto& pair) { return pair.first == when || pair.first == load; });
+        std::erase_if(
+            pairs, [](const auto& pair) { return pair.first == when || pair.first == command || pair.first == load; });
         return pairs;
     };
     return lasting(a) == lasting(b);

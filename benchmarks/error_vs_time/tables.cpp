@@ -274,7 +274,7 @@ table certificates(const study& all, const std::string& scene) {
         result.rows.push_back(
             {a.method, a.status, aglow::percent(a.target), aglow::percent(a.bound), aglow::percent(a.true_error),
              aglow::percent(a.bias_low) + " … " + aglow::percent(a.bias_high), aglow::percent(a.true_bias),
-             rounded(a.seconds), a.render_seconds > 0 ? aglow::percent(a.seconds / a.render_seconds) : dash});
+             rounded(a.seconds), a.render_seconds > 0 ? rounded(100 * a.seconds / a.render_seconds) + " %" : dash});
     }
     return result;
 }
