@@ -1,13 +1,14 @@
 // Do the statements of an audit hold as often as they say? For scenes × integrators: hundreds of certificates, each
 // from probes of its own, against the truth; and pictures that are wrong on purpose and must not be certified.
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <vector>
 
+#include <aglow/report/quantiles.hpp>
 #include <aglow/report/running_mean.hpp>
 
 #include "case.hpp"
+#include "stop_rule.hpp"
 
 using namespace calibration;
 
@@ -18,45 +19,10 @@ struct tally {
     aglow::running_mean all, feature, hard, caustic, dark;  ///< coverage of the error bars, by kind of pixel
     aglow::running_mean sharpness;                          ///< mean bar over mean error
     aglow::running_mean bias, mean_error, quantile;         ///< coverage of the picture's statements
-    std::size_t certified{0};
+    std::vector<double> mean_bound, quantile_bound;         ///< over the truth
+    aglow::running_mean samples;                            ///< of an audit
     std::size_t falsely{0};
 };
-
-struct true_errors {
-    std::vector<double> absolute{};  ///< of the mean of the channels
-    double bias{0};
-    double mean_relative{0};
-    double quantile95{0};
-};
-
-true_errors errors_of(const known_scene& scene, const judged_picture& picture, double dark) {
-    true_errors result;
-    const std::size_t count = scene.truth().size() / 3;
-    double ours = 0;
-    double theirs = 0;
-    for (const float x : picture.values) { ours += static_cast<double>(x); }
-    for (const float x : scene.truth()) { theirs += static_cast<double>(x); }
-    const double delta = dark * ours / static_cast<double>(picture.values.size());
-    result.bias = ours / theirs - 1;
-    std::vector<double> relative;
-    for (std::size_t i = 0; i < count; ++i) {
-        double signed_error = 0;
-        double pixel = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double truth = static_cast<double>(scene.truth()[3 * i + c]);
-            const double error = static_cast<double>(picture.values[3 * i + c]) - truth;
-            signed_error += error / 3;
-            pixel += std::abs(error) / (truth + delta) / 3;
-        }
-        result.absolute.push_back(std::abs(signed_error));
-        relative.push_back(pixel);
-        result.mean_relative += pixel / static_cast<double>(count);
-    }
-    const auto at = relative.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(count) * 0.95);
-    std::nth_element(relative.begin(), at, relative.end());
-    result.quantile95 = *at;
-    return result;
-}
 
 void count_bars(const known_scene& scene, const judged_picture& picture, const true_errors& truth,
                 const aglow::audit_result& result, tally& into) {
@@ -77,23 +43,35 @@ void count_bars(const known_scene& scene, const judged_picture& picture, const t
     into.sharpness.add(width.mean() / error.mean());
 }
 
+/// Audits as the effort says; by itself at a target near the true error: what a false certificate would take least
+/// luck for.
+aglow::audit_options audit_options(const known_scene& scene, double error) {
+    const effort& how = scene.how();
+    aglow::audit_options options{.noise = how.noise, .sample_bound = scene.sample_bound()};
+    options.class_probes = how.class_probes;
+    options.budget = scene.budget(options.probes);
+    options.target = how.target > 0 ? how.target : 0.97 * error;
+    return options;
+}
+
 tally calibrate(const known_scene& scene, const judged_picture& picture) {
     tally result;
-    const auto probe = [&](std::size_t pixel, std::uint64_t seed, std::size_t) { return scene.look(pixel, seed); };
-    aglow::audit_options options{.probes = 400, .sample_bound = scene.sample_bound()};
-    // What the pool can give, and an eighth more for the look that deals it out.
-    options.budget = 9 * options.probes * aglow::probe_batches * scene.samples_per_look() / 8;
-    const true_errors truth = errors_of(scene, picture, options.dark);
-    // A target near the true error: what a false certificate would take least luck for.
-    options.target = 0.97 * truth.mean_relative;
+    const true_errors truth = errors_of(scene, picture, aglow::audit_options{}.dark);
+    aglow::audit_options options = audit_options(scene, truth.mean_relative);
     for (std::size_t i = 0; i < scene.how().certificates; ++i) {
         options.seed = i;
-        const auto stated = aglow::audit(picture.audited(), probe, options, aglow::own_threads{});
+        const auto stated = aglow::audit(picture.audited(), scene.probe(), options, aglow::own_threads{});
         count_bars(scene, picture, truth, stated, result);
         result.bias.add(stated.energy_bias.low <= truth.bias && truth.bias <= stated.energy_bias.high ? 1 : 0);
         result.mean_error.add(truth.mean_relative <= stated.mean_error_bound ? 1 : 0);
-        if (stated.quantile_bound) { result.quantile.add(truth.quantile95 <= *stated.quantile_bound ? 1 : 0); }
-        if (stated.status == aglow::audit_status::certified) { ++result.falsely; }
+        result.mean_bound.push_back(stated.mean_error_bound / truth.mean_relative);
+        if (stated.quantile_bound) {
+            result.quantile.add(truth.quantile95 <= *stated.quantile_bound ? 1 : 0);
+            result.quantile_bound.push_back(*stated.quantile_bound / truth.quantile95);
+        }
+        result.samples.add(static_cast<double>(stated.samples));
+        const bool passed = stated.status == aglow::audit_status::certified;
+        if (passed && options.target < truth.mean_relative) { ++result.falsely; }
     }
     return result;
 }
@@ -101,11 +79,10 @@ tally calibrate(const known_scene& scene, const judged_picture& picture) {
 /// How many of up to 100 audits of `picture` certify it.
 std::size_t certified(const known_scene& scene, const judged_picture& picture, aglow::audit_options options,
                       std::size_t trials) {
-    const auto probe = [&](std::size_t pixel, std::uint64_t seed, std::size_t) { return scene.look(pixel, seed); };
     std::size_t passed = 0;
     for (std::size_t i = 0; i < trials; ++i) {
         options.seed = 5000 + i;
-        const auto stated = aglow::audit(picture.audited(), probe, options, aglow::own_threads{});
+        const auto stated = aglow::audit(picture.audited(), scene.probe(), options, aglow::own_threads{});
         if (stated.status == aglow::audit_status::certified) { ++passed; }
     }
     return passed;
@@ -115,7 +92,7 @@ std::size_t certified(const known_scene& scene, const judged_picture& picture, a
 void control(const known_scene& scene, const char* what, const judged_picture& picture, double target,
              double bias_target, bool should_pass) {
     aglow::audit_options options{.target = target, .probes = 1000, .sample_bound = scene.sample_bound()};
-    options.budget = 9 * options.probes * aglow::probe_batches * scene.samples_per_look() / 8;
+    options.budget = scene.budget(options.probes);
     if (bias_target > 0) { options.bias_target = bias_target; }
     const std::size_t trials = std::min<std::size_t>(scene.how().certificates, 100);
     const std::size_t passed = certified(scene, picture, options, trials);
@@ -174,65 +151,121 @@ void controls(const known_scene& scene) {
 }
 
 void print_head() {
-    std::printf("%-16s %-17s %6s %6s %6s %6s %6s %7s | %6s %6s %6s %7s\n", "scene", "method", "all", "featur", "hard",
-                "caust", "dark", "bar/err", "bias", "mean", "q95", "false");
+    std::printf("%-16s %-17s %6s %6s %6s %6s %6s %7s | %6s %6s %6s %6s %6s %8s %7s\n", "scene", "method", "all",
+                "featur", "hard", "caust", "dark", "bar/err", "bias", "mean", "b/true", "q95", "b/true", "samples",
+                "false");
 }
 
 void print(const known_scene& scene, const char* method, const tally& t) {
     const auto percent = [](const aglow::running_mean& m) { return m.count() == 0 ? 0.0 : 100 * m.mean(); };
-    std::printf("%-16s %-17s %6.1f %6.1f %6.1f %6.1f %6.1f %7.2f | %6.1f %6.1f %6.1f %3zu/%zu\n", scene.name().c_str(),
-                method, percent(t.all), percent(t.feature), percent(t.hard), percent(t.caustic), percent(t.dark),
-                t.sharpness.mean(), percent(t.bias), percent(t.mean_error), percent(t.quantile), t.falsely,
-                scene.how().certificates);
+    const auto typical = [](const std::vector<double>& v) { return v.empty() ? 0.0 : aglow::median(v); };
+    std::printf("%-16s %-17s %6.1f %6.1f %6.1f %6.1f %6.1f %7.2f | %6.1f %6.1f %6.2f %6.1f %6.2f %8.0f %3zu/%zu\n",
+                scene.name().c_str(), method, percent(t.all), percent(t.feature), percent(t.hard), percent(t.caustic),
+                percent(t.dark), t.sharpness.mean(), percent(t.bias), percent(t.mean_error), typical(t.mean_bound),
+                percent(t.quantile), typical(t.quantile_bound), t.samples.mean(), t.falsely, scene.how().certificates);
     std::fflush(stdout);
+}
+
+void print_trials(const known_scene& scene, const char* method, const stop_tally& t) {
+    const auto at = [](const std::vector<double>& v, double q) { return v.empty() ? 0.0 : aglow::quantile(v, q); };
+    std::printf(
+        "stop rule %-16s %-17s reached %3zu, out of reach %3zu, out of work %3zu of %zu; false %zu; "
+        "work over the oracle's: median %.2f, 90 %% %.2f, probes' share of it %.2f\n",
+        scene.name().c_str(), method, t.reached, t.unreachable, t.out_of_work, t.trials, t.falsely, at(t.work, 0.5),
+        at(t.work, 0.9), t.probe_share.mean());
+    std::fflush(stdout);
+}
+
+/// What is to be done, by the command line.
+struct job {
+    effort how{};
+    std::vector<std::string> scenes{"cornell-diffuse", "point-light", "two-rooms", "cornell-glass"};
+    bool coverage{true};
+    bool controls{true};
+    bool trials{true};
+    std::size_t first{0};
+    std::size_t last{std::size(methods)};
+};
+
+void help(const effort& e) {
+    std::printf(
+        "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--pool=N] [--certificates=N] [--method=N]\n"
+        "       [--target=X] [--noise=X] [--class-probes=N] [--budget=N] [--no-coverage] [--no-controls] "
+        "[--no-trials]\n"
+        "Percentages of %zu certificates at nominal 95 %%: error bars by kind of pixel; statements on the energy, the\n"
+        "mean relative error and its 95 %% quantile, and how far above the truth they are; false certificates, at a\n"
+        "target just below the true error where none is told. Then pictures that are wrong on purpose, and pictures\n"
+        "rendered until they are certified, beside an oracle that knows their error.\n",
+        e.certificates);
+}
+
+/// Whether `argument` was `name` and a number, which is put into `value`.
+template <typename T>
+bool take(const std::string& argument, const std::string& name, T& value) {
+    if (argument.rfind(name + '=', 0) != 0) { return false; }
+    value = static_cast<T>(std::stod(argument.substr(name.size() + 1)));
+    return true;
+}
+
+bool take(const std::string& argument, job& what) {
+    effort& e = what.how;
+    if (argument == "--smoke") {
+        e = {.pixels = 24, .pool = 1024, .certificates = 3};
+        what.scenes = {"cornell-diffuse"};
+    } else if (argument == "--full") {
+        e = {.pixels = 96, .pool = 65536, .certificates = 1000};
+    } else if (argument == "--no-coverage") {
+        what.coverage = false;
+    } else if (argument == "--no-controls") {
+        what.controls = false;
+    } else if (argument == "--no-trials") {
+        what.trials = false;
+    } else if (take(argument, "--method", what.first)) {
+        what.last = what.first + 1;
+    } else {
+        return take(argument, "--pixels", e.pixels) || take(argument, "--pool", e.pool) ||
+               take(argument, "--certificates", e.certificates) || take(argument, "--target", e.target) ||
+               take(argument, "--noise", e.noise) || take(argument, "--class-probes", e.class_probes) ||
+               take(argument, "--budget", e.budget);
+    }
+    return true;
+}
+
+void work(const known_scene& scene, const job& what) {
+    for (std::size_t m = what.first; m < what.last && what.coverage; ++m) {
+        print(scene, methods[m], calibrate(scene, render(scene, m, 7)));
+    }
+    if (what.controls) { controls(scene); }
+    for (std::size_t m = what.first; m < what.last && what.trials; ++m) {
+        print_trials(scene, methods[m], stop_trials(scene, m));
+    }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    effort e;
-    bool chosen = false;
-    bool with_controls = true;
-    std::vector<std::string> scenes{"cornell-diffuse", "point-light", "two-rooms", "cornell-glass"};
+    job what;
+    std::vector<std::string> chosen;
     for (int i = 1; i < argc; ++i) {
-        if (std::strcmp(argv[i], "--smoke") == 0) {
-            e = {.pixels = 24, .truth = 256, .pool = 256, .batches = 16, .certificates = 3};
-            scenes = {"cornell-diffuse"};
-        } else if (std::strcmp(argv[i], "--full") == 0) {
-            e = {.pixels = 96, .truth = 65536, .pool = 16384, .batches = 64, .certificates = 1000};
-        } else if (std::strncmp(argv[i], "--pixels=", 9) == 0) {
-            e.pixels = std::stoul(argv[i] + 9);
-        } else if (std::strncmp(argv[i], "--truth=", 8) == 0) {
-            e.truth = static_cast<std::uint32_t>(std::stoul(argv[i] + 8));
-        } else if (std::strncmp(argv[i], "--pool=", 7) == 0) {
-            e.pool = static_cast<std::uint32_t>(std::stoul(argv[i] + 7));
-        } else if (std::strcmp(argv[i], "--no-controls") == 0) {
-            with_controls = false;
-        } else if (std::strncmp(argv[i], "--", 2) != 0) {
-            if (!chosen) { scenes.clear(); }
-            chosen = true;
-            scenes.emplace_back(argv[i]);
-        } else {
-            std::printf(
-                "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--truth=N] [--pool=N] "
-                "[--no-controls]\n"
-                "Percentages of %zu certificates at nominal 95 %%: error bars by kind of pixel; statements on the\n"
-                "energy, the mean relative error and its 95 %% quantile; false certificates at a target just below\n"
-                "the true error.\n",
-                e.certificates);
-            return std::strcmp(argv[i], "--help") == 0 ? 0 : 2;
+        const std::string argument = argv[i];
+        if (argument.rfind("--", 0) != 0) {
+            chosen.push_back(argument);
+        } else if (!take(argument, what)) {
+            help(what.how);
+            return argument == "--help" ? 0 : 2;
         }
     }
-    print_head();
-    for (const std::string& name : scenes) {
+    if (!chosen.empty()) { what.scenes = chosen; }
+    if (what.last > std::size(methods)) {
+        help(what.how);
+        return 2;
+    }
+    if (what.coverage) { print_head(); }
+    for (const std::string& name : what.scenes) {
         if (!host::scenes::find<float>(name)) {
             std::fprintf(stderr, "calibration: no scene called %s\n", name.c_str());
             return 2;
         }
-        const known_scene scene{*host::scenes::find<float>(name), e};
-        for (std::size_t m = 0; m < std::size(methods); ++m) {
-            print(scene, methods[m], calibrate(scene, render(scene, m, 7)));
-        }
-        if (with_controls) { controls(scene); }
+        work(known_scene{*host::scenes::find<float>(name), what.how}, what);
     }
 }

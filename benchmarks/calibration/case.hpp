@@ -13,9 +13,11 @@
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/progressive.hpp>
 #include <aglow/report/audit.hpp>
 
+#include "common/light_set.hpp"
 #include "common/scene.hpp"
 #include "common/scenes/registry.hpp"
 
@@ -25,14 +27,17 @@ using rgb = glm::vec3;
 
 /// How much work goes into a calibration.
 struct effort {
-    std::size_t pixels{64};      ///< width and height of the pictures
-    std::uint32_t truth{16384};  ///< samples per pixel of the truth
-    std::uint32_t pool{4096};    ///< samples per pixel of the pool, in batches
-    std::uint32_t batches{64};
+    std::size_t pixels{64};     ///< width and height of the pictures
+    std::uint32_t pool{16384};  ///< samples per pixel of the pool
     std::size_t certificates{200};
+    double target{0};  ///< that audits are asked for; 0: 3 % below the true error
+    double noise{aglow::audit_options{}.noise};
+    std::size_t class_probes{aglow::audit_options{}.class_probes};
+    std::size_t budget{0};  ///< samples of an audit; 0: an eighth of the pool for each of its probes
 };
 
-/// A scene, its true picture, and independent looks at every pixel.
+/// A scene, and a pool of unbiased samples of every pixel. What is true here is the mean of the pool and looks are
+/// drawn from it, so that the truth has no noise of its own; the pool must be much larger than any look.
 class known_scene {
 public:
     [[nodiscard]] auto eye() const {
@@ -42,20 +47,13 @@ public:
     }
 
     known_scene(const host::scene_description<float>& description, const effort& e)
-        : name_{description.name}, effort_{e}, scene_{description} {
-        const aglow::path_tracer tracer{scene_, scene_.lights()};
-        aglow::film<rgb> film{e.pixels, e.pixels};
-        film.expose(eye(), tracer, {.samples = e.truth, .seed = 1001}, aglow::own_threads{});
-        truth_ = values_of(film);
-        pool_.resize(e.batches);
-        for (std::uint32_t b = 0; b < e.batches; ++b) {
-            aglow::film<rgb> batch{e.pixels, e.pixels};
-            batch.expose(eye(), tracer, {.samples = e.pool / e.batches, .seed = 2000 + b}, aglow::own_threads{});
-            pool_[b] = values_of(batch);
-        }
+        : name_{description.name}, effort_{e}, scene_{description}, tracer_{scene_, scene_.lights()} {
+        fill_pool();
         find_features();
         find_caustics();
     }
+    known_scene(const known_scene&) = delete;
+    known_scene& operator=(const known_scene&) = delete;
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const effort& how() const { return effort_; }
@@ -65,9 +63,6 @@ public:
     /// Pixels that owe a tenth of their light or more to caustics.
     [[nodiscard]] const std::vector<char>& caustic() const { return caustic_; }
 
-    /// Samples that a look is the mean of.
-    [[nodiscard]] std::size_t samples_per_look() const { return effort_.pool / effort_.batches; }
-
     /// What no sample of a path exceeds but for a share that falls exponentially: the brightest lamp at each surface
     /// before roulette begins, and once more for what is left then.
     [[nodiscard]] double sample_bound() const {
@@ -76,10 +71,26 @@ public:
         return brightest * (aglow::path_options{}.roulette_from + 1.0);
     }
 
-    /// An unbiased look at a pixel: one batch of the pool, chosen by the seed.
-    [[nodiscard]] rgb look(std::size_t pixel, std::uint64_t seed) const {
-        const std::vector<float>& batch = pool_[aglow::mix(seed, pixel) % pool_.size()];
-        return {batch[3 * pixel], batch[3 * pixel + 1], batch[3 * pixel + 2]};
+    /// What an audit of so many probes may spend: an eighth more than its probes, for the look that deals samples out.
+    [[nodiscard]] std::size_t budget(std::size_t probes) const {
+        return effort_.budget > 0 ? effort_.budget : 9 * probes * (effort_.pool / 8) / 8;
+    }
+
+    /// The mean of `count` samples of a pixel: means of the pool, drawn at random, and what is left over traced anew.
+    [[nodiscard]] rgb look(std::size_t pixel, std::uint64_t seed, std::size_t count) const {
+        const std::size_t whole = count / base;
+        const rgb* const own = &pool_[pixel * means()];
+        rgb sum{};
+        for (std::size_t i = 0; i < whole; ++i) { sum += own[aglow::mix(seed, i) % means()]; }
+        sum *= static_cast<float>(base);
+        const std::size_t left = count % base;
+        if (left > 0) { sum += trace(pixel, seed, left) * static_cast<float>(left); }
+        return sum / static_cast<float>(count);
+    }
+
+    /// `look` as audits want it.
+    [[nodiscard]] auto probe() const {
+        return [this](std::size_t pixel, std::uint64_t seed, std::size_t count) { return look(pixel, seed, count); };
     }
 
     [[nodiscard]] static std::vector<float> values_of(const aglow::film<rgb>& film) {
@@ -95,6 +106,33 @@ public:
     }
 
 private:
+    static constexpr std::size_t base = 8;  // samples in a mean of the pool
+
+    [[nodiscard]] std::size_t means() const { return effort_.pool / base; }
+
+    [[nodiscard]] rgb trace(std::size_t pixel, std::uint64_t seed, std::size_t count) const {
+        const auto through = eye();
+        return aglow::pixel_probe{through, tracer_, effort_.pixels}(pixel, seed, count);
+    }
+
+    void fill_pool() {
+        const std::size_t count = effort_.pixels * effort_.pixels;
+        pool_.resize(count * means());
+        truth_.resize(3 * count);
+        aglow::own_threads{}(count, [&](std::size_t pixel) {
+            glm::dvec3 sum{};
+            for (std::size_t i = 0; i < means(); ++i) {
+                const rgb mean = trace(pixel, aglow::mix(2000, i), base);
+                pool_[pixel * means() + i] = mean;
+                sum += glm::dvec3{mean};
+            }
+            for (int c = 0; c < 3; ++c) {
+                truth_[3 * pixel + static_cast<std::size_t>(c)] =
+                    static_cast<float>(sum[c] / static_cast<double>(means()));
+            }
+        });
+    }
+
     /// Pixels with another primitive within two of them.
     void find_features() {
         const std::size_t n = effort_.pixels;
@@ -130,8 +168,9 @@ private:
     std::string name_;
     effort effort_;
     host::scene<float> scene_;
+    aglow::path_tracer<host::scene<float>, host::light_set<float>> tracer_;
     std::vector<float> truth_;
-    std::vector<std::vector<float>> pool_;
+    std::vector<rgb> pool_;  // [pixel][mean]
     std::vector<char> feature_;
     std::vector<char> caustic_;
 };
@@ -185,22 +224,57 @@ struct judged_picture {
     return result;
 }
 
+/// How wrong a picture is.
+struct true_errors {
+    std::vector<double> absolute{};  ///< of the mean of the channels
+    double bias{0};
+    double mean_relative{0};
+    double quantile95{0};
+};
+
+/// Relative errors are over the truth and `dark` times the mean of the picture, as in audits.
+[[nodiscard]] inline true_errors errors_of(const known_scene& scene, const judged_picture& picture, double dark) {
+    true_errors result;
+    const std::size_t count = scene.truth().size() / 3;
+    double ours = 0;
+    double theirs = 0;
+    for (const float x : picture.values) { ours += static_cast<double>(x); }
+    for (const float x : scene.truth()) { theirs += static_cast<double>(x); }
+    const double delta = dark * ours / static_cast<double>(picture.values.size());
+    result.bias = ours / theirs - 1;
+    std::vector<double> relative;
+    for (std::size_t i = 0; i < count; ++i) {
+        double signed_error = 0;
+        double pixel = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double truth = static_cast<double>(scene.truth()[3 * i + c]);
+            const double error = static_cast<double>(picture.values[3 * i + c]) - truth;
+            signed_error += error / 3;
+            pixel += std::abs(error) / (truth + delta) / 3;
+        }
+        result.absolute.push_back(std::abs(signed_error));
+        relative.push_back(pixel);
+        result.mean_relative += pixel / static_cast<double>(count);
+    }
+    const auto at = relative.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(count) * 0.95);
+    std::nth_element(relative.begin(), at, relative.end());
+    result.quantile95 = *at;
+    return result;
+}
+
 inline constexpr const char* methods[] = {"photon map", "final gather", "irradiance cache", "gather cache",
                                           "progressive"};
 
 /// What is wrong with a picture, on purpose.
 enum class mistake { none, wide_radius, no_depth, lamp_missing, coarse_cache };
 
-/// The picture of `scene` by method number `method`, seen in `world`.
-[[nodiscard]] inline judged_picture render(const known_scene& scene, const host::scene<float>& world,
-                                           std::size_t method, std::uint64_t seed, mistake wrong = mistake::none) {
+/// Calls `use` with the integrator number `method`, all but the progressive one, of `world` with its maps.
+template <typename Use>
+void with_integrator(const known_scene& scene, const host::scene<float>& world, std::size_t method, std::uint64_t seed,
+                     mistake wrong, const Use& use) {
     const std::size_t n = scene.how().pixels;
     const auto& lights = world.lights();
     const aglow::own_threads run{};
-    aglow::film<rgb> film{n, n};
-    const auto expose = [&](const auto& integrator, std::uint32_t samples) {
-        film.expose(scene.eye(), integrator, {.samples = samples, .seed = seed}, run);
-    };
     aglow::caching_options caching;
     caching.view = {.width = n, .height = n, .looks = 4};
     caching.fill.rays = 256;
@@ -211,22 +285,45 @@ enum class mistake { none, wide_radius, no_depth, lamp_missing, coarse_cache };
     aglow::density_options density;
     if (wrong == mistake::wide_radius) { density.count *= 9; }
     switch (method) {
-        case 0: expose(aglow::photon_mapping{world, lights, {.photons = photons, .density = density}, run}, 16); break;
-        case 1: expose(aglow::final_gathering{world, lights, {.photons = photons, .rays = 32}, run}, 16); break;
-        case 2: expose(aglow::irradiance_caching{world, lights, world.bounds(), scene.eye(), caching, run}, 16); break;
-        case 3: {
+        case 0: return use(aglow::photon_mapping{world, lights, {.photons = photons, .density = density}, run});
+        case 1: return use(aglow::final_gathering{world, lights, {.photons = photons, .rays = 32}, run});
+        case 2: return use(aglow::irradiance_caching{world, lights, world.bounds(), scene.eye(), caching, run});
+        default: {
             aglow::gather_caching_options options;
             options.photons = photons;
             options.caching = caching;
-            expose(aglow::gather_caching{world, lights, world.bounds(), scene.eye(), options, run}, 16);
-            break;
-        }
-        default: {
-            aglow::progressive_photon_mapping passes{
-                world, lights, {.caustic = 10'000, .indirect = 20'000, .seed = seed}};
-            for (int i = 0; i < 32; ++i) { passes.pass(film, scene.eye(), run); }
+            return use(aglow::gather_caching{world, lights, world.bounds(), scene.eye(), options, run});
         }
     }
+}
+
+inline constexpr std::size_t progressive = 4;
+
+/// Calls `use` with a callable that exposes a film with so many more samples, or passes of the progressive method.
+template <typename Use>
+void with_method(const known_scene& scene, const host::scene<float>& world, std::size_t method, std::uint64_t seed,
+                 mistake wrong, const Use& use) {
+    const aglow::own_threads run{};
+    if (method == progressive) {
+        aglow::progressive_photon_mapping passes{
+            world, world.lights(), {.caustic = 10'000, .indirect = 20'000, .seed = seed}};
+        return use([&](aglow::film<rgb>& film, std::uint32_t more) {
+            for (std::uint32_t i = 0; i < more; ++i) { passes.pass(film, scene.eye(), run); }
+        });
+    }
+    with_integrator(scene, world, method, seed, wrong, [&](const auto& integrator) {
+        use([&](aglow::film<rgb>& film, std::uint32_t more) {
+            film.expose(scene.eye(), integrator, {.samples = more, .seed = seed}, run);
+        });
+    });
+}
+
+/// The picture of `scene` by method number `method`, seen in `world`.
+[[nodiscard]] inline judged_picture render(const known_scene& scene, const host::scene<float>& world,
+                                           std::size_t method, std::uint64_t seed, mistake wrong = mistake::none) {
+    aglow::film<rgb> film{scene.how().pixels, scene.how().pixels};
+    with_method(scene, world, method, seed, wrong,
+                [&](const auto& expose) { expose(film, method == progressive ? 32 : 16); });
     return judge(scene, film);
 }
 

@@ -1,0 +1,116 @@
+// Pictures rendered until they are certified, beside an oracle that knows their error: how often is a certificate
+// false, and what does it cost not to know?
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <aglow/report/render_until.hpp>
+#include <aglow/report/running_mean.hpp>
+
+#include "case.hpp"
+
+namespace calibration {
+
+/// One picture at ever more samples a pixel (or passes), and its true error.
+class growing_picture {
+public:
+    growing_picture(const known_scene& scene, std::size_t method, std::uint64_t seed, std::uint32_t most) {
+        aglow::film<rgb> film{scene.how().pixels, scene.how().pixels};
+        with_method(scene, scene.scene(), method, seed, mistake::none, [&](const auto& expose) {
+            while (film.samples() < most) {
+                const std::uint32_t next = std::max(film.samples() + 1, film.samples() + film.samples() / 16);
+                expose(film, std::min(most, next) - film.samples());
+                add(scene, film);
+            }
+        });
+    }
+
+    /// The picture when at least `work` is done; the last one if none is.
+    [[nodiscard]] std::size_t at(double work) const {
+        const auto found = std::lower_bound(works_.begin(), works_.end(), work);
+        return std::min(works_.size() - 1, static_cast<std::size_t>(found - works_.begin()));
+    }
+    /// The first picture with an error of at most `error`; the last one if none has.
+    [[nodiscard]] std::size_t within(double error) const {
+        const auto found = std::find_if(errors_.begin(), errors_.end(), [&](double e) { return e <= error; });
+        return std::min(works_.size() - 1, static_cast<std::size_t>(found - errors_.begin()));
+    }
+
+    [[nodiscard]] double work(std::size_t i) const { return works_[i]; }
+    [[nodiscard]] double error(std::size_t i) const { return errors_[i]; }
+    [[nodiscard]] aglow::audited_picture<float> picture(std::size_t i) const { return pictures_[i].audited(); }
+
+private:
+    void add(const known_scene& scene, const aglow::film<rgb>& film) {
+        judged_picture now{.values = known_scene::values_of(film), .pixels = film.width()};
+        for (std::size_t i = 0; i < now.values.size() / 3; ++i) {
+            now.guess.push_back(film.error(i % film.width(), i / film.width()));
+        }
+        works_.push_back(film.samples());
+        errors_.push_back(errors_of(scene, now, aglow::audit_options{}.dark).mean_relative);
+        pictures_.push_back(std::move(now));
+    }
+
+    std::vector<double> works_{};
+    std::vector<double> errors_{};
+    std::vector<judged_picture> pictures_{};
+};
+
+/// What became of the trials of one method.
+struct stop_tally {
+    std::size_t trials{0};
+    std::size_t reached{0};
+    std::size_t unreachable{0};
+    std::size_t out_of_work{0};
+    std::size_t falsely{0};
+    std::vector<double> work{};         ///< picture and probes where it was reached, over the work of the oracle
+    aglow::running_mean probe_share{};  ///< of that work
+};
+
+/// One trial: the target is the error of the picture when the oracle's work is done, and the rule may do 8 times that.
+inline void try_to_stop(const known_scene& scene, const growing_picture& growing, double target, std::uint64_t seed,
+                        stop_tally& into) {
+    // A path takes about twice as long as a sample of a picture; in pictures of 512 x 512, of which these are small
+    // ones.
+    constexpr double probe_work = 2.0 / (512 * 512);
+    const double oracle = growing.work(growing.within(target));
+    std::size_t now = 0;
+    const auto advance = [&](double work) {
+        now = growing.at(work);
+        return growing.picture(now);
+    };
+    aglow::render_until_options options{.first_work = 1, .most_work = 8 * oracle, .probe_work = probe_work};
+    options.audit = {.target = target, .seed = seed};
+    const auto end = aglow::render_until(advance, scene.probe(), options, aglow::own_threads{});
+    ++into.trials;
+    into.unreachable += end.status == aglow::until_status::unreachable ? 1 : 0;
+    into.out_of_work += end.status == aglow::until_status::out_of_work ? 1 : 0;
+    if (end.status != aglow::until_status::reached) { return; }
+    ++into.reached;
+    into.falsely += growing.error(now) > target ? 1 : 0;
+    const double probes = probe_work * static_cast<double>(end.probe_samples);
+    into.work.push_back((growing.work(now) + probes) / oracle);
+    into.probe_share.add(probes / (growing.work(now) + probes));
+}
+
+/// Targets where an oracle needs 4 to 32 samples a pixel, spread evenly, on four pictures of `method`.
+[[nodiscard]] inline stop_tally stop_trials(const known_scene& scene, std::size_t method) {
+    stop_tally result;
+    constexpr std::size_t pictures = 4;
+    for (std::size_t p = 0; p < pictures; ++p) {
+        const growing_picture growing{scene, method, 11 + p, 256};
+        const std::size_t trials = std::max<std::size_t>(1, scene.how().certificates / pictures);
+        for (std::size_t i = 0; i < trials; ++i) {
+            const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(trials);
+            const double target = growing.error(growing.at(4 * std::pow(8.0, share)));
+            try_to_stop(scene, growing, target, aglow::mix(p, i), result);
+        }
+    }
+    return result;
+}
+
+}  // namespace calibration
