@@ -1,6 +1,7 @@
 // Do the statements of an audit hold as often as they say? For scenes × integrators: hundreds of certificates, each
 // from probes of its own, against the truth; and pictures that are wrong on purpose and must not be certified.
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct tally {
     aglow::running_mean bias, mean_error, quantile;         ///< coverage of the picture's statements
     std::vector<double> mean_bound, quantile_bound;         ///< over the truth
     aglow::running_mean samples;                            ///< of an audit
+    aglow::running_mean slow;                               ///< whether noise seemed heavy-tailed to the end
     std::size_t falsely{0};
 };
 
@@ -47,7 +49,8 @@ void count_bars(const known_scene& scene, const judged_picture& picture, const t
 /// luck for.
 aglow::audit_options audit_options(const known_scene& scene, double error) {
     const effort& how = scene.how();
-    aglow::audit_options options{.noise = how.noise, .sample_bound = scene.sample_bound()};
+    aglow::audit_options options{.noise = how.noise};
+    if (how.bounded) { options.sample_bound = scene.sample_bound(); }
     options.class_probes = how.class_probes;
     options.budget = scene.budget(options.probes);
     options.target = how.target > 0 ? how.target : 0.97 * error;
@@ -70,6 +73,7 @@ tally calibrate(const known_scene& scene, const judged_picture& picture) {
             result.quantile_bound.push_back(*stated.quantile_bound / truth.quantile95);
         }
         result.samples.add(static_cast<double>(stated.samples));
+        result.slow.add(stated.tail_index > 0.6 ? 1 : 0);
         const bool passed = stated.status == aglow::audit_status::certified;
         if (passed && options.target < truth.mean_relative) { ++result.falsely; }
     }
@@ -151,28 +155,30 @@ void controls(const known_scene& scene) {
 }
 
 void print_head() {
-    std::printf("%-16s %-17s %6s %6s %6s %6s %6s %7s | %6s %6s %6s %6s %6s %8s %7s\n", "scene", "method", "all",
+    std::printf("%-16s %-17s %6s %6s %6s %6s %6s %7s | %6s %6s %6s %6s %6s %8s %5s %7s\n", "scene", "method", "all",
                 "featur", "hard", "caust", "dark", "bar/err", "bias", "mean", "b/true", "q95", "b/true", "samples",
-                "false");
+                "slow", "false");
 }
 
 void print(const known_scene& scene, const char* method, const tally& t) {
     const auto percent = [](const aglow::running_mean& m) { return m.count() == 0 ? 0.0 : 100 * m.mean(); };
     const auto typical = [](const std::vector<double>& v) { return v.empty() ? 0.0 : aglow::median(v); };
-    std::printf("%-16s %-17s %6.1f %6.1f %6.1f %6.1f %6.1f %7.2f | %6.1f %6.1f %6.2f %6.1f %6.2f %8.0f %3zu/%zu\n",
-                scene.name().c_str(), method, percent(t.all), percent(t.feature), percent(t.hard), percent(t.caustic),
-                percent(t.dark), t.sharpness.mean(), percent(t.bias), percent(t.mean_error), typical(t.mean_bound),
-                percent(t.quantile), typical(t.quantile_bound), t.samples.mean(), t.falsely, scene.how().certificates);
+    std::printf(
+        "%-16s %-17s %6.1f %6.1f %6.1f %6.1f %6.1f %7.2f | %6.1f %6.1f %6.2f %6.1f %6.2f %8.0f %5.1f %3zu/%zu\n",
+        scene.name().c_str(), method, percent(t.all), percent(t.feature), percent(t.hard), percent(t.caustic),
+        percent(t.dark), t.sharpness.mean(), percent(t.bias), percent(t.mean_error), typical(t.mean_bound),
+        percent(t.quantile), typical(t.quantile_bound), t.samples.mean(), percent(t.slow), t.falsely,
+        scene.how().certificates);
     std::fflush(stdout);
 }
 
 void print_trials(const known_scene& scene, const char* method, const stop_tally& t) {
     const auto at = [](const std::vector<double>& v, double q) { return v.empty() ? 0.0 : aglow::quantile(v, q); };
     std::printf(
-        "stop rule %-16s %-17s reached %3zu, out of reach %3zu, out of work %3zu of %zu; false %zu; "
-        "work over the oracle's: median %.2f, 90 %% %.2f, probes' share of it %.2f\n",
-        scene.name().c_str(), method, t.reached, t.unreachable, t.out_of_work, t.trials, t.falsely, at(t.work, 0.5),
-        at(t.work, 0.9), t.probe_share.mean());
+        "until %-16s %-17s certified %3zu (%zu falsely), out of reach %zu, out of work %zu of %zu; work over the "
+        "oracle's: median %.2f, 90 %% %.2f; the picture's alone: %.2f, %.2f\n",
+        scene.name().c_str(), method, t.reached, t.falsely, t.unreachable, t.out_of_work, t.trials, at(t.work, 0.5),
+        at(t.work, 0.9), at(t.picture_work, 0.5), at(t.picture_work, 0.9));
     std::fflush(stdout);
 }
 
@@ -190,21 +196,25 @@ struct job {
 void help(const effort& e) {
     std::printf(
         "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--pool=N] [--certificates=N] [--method=N]\n"
-        "       [--target=X] [--noise=X] [--class-probes=N] [--budget=N] [--no-coverage] [--no-controls] "
-        "[--no-trials]\n"
+        "       [--target=X] [--noise=X] [--class-probes=N] [--budget=N] [--bounded] [--width=N]\n"
+        "       [--no-coverage] [--no-controls] [--no-trials]\n"
         "Percentages of %zu certificates at nominal 95 %%: error bars by kind of pixel; statements on the energy, the\n"
         "mean relative error and its 95 %% quantile, and how far above the truth they are; false certificates, at a\n"
         "target just below the true error where none is told. Then pictures that are wrong on purpose, and pictures\n"
-        "rendered until they are certified, beside an oracle that knows their error.\n",
+        "rendered until they are certified, beside an oracle that knows their error, with probes weighed against\n"
+        "pictures of --width.\n",
         e.certificates);
 }
 
-/// Whether `argument` was `name` and a number, which is put into `value`.
+/// Whether `argument` was `name` and a number not below 0, which is put into `value`.
 template <typename T>
 bool take(const std::string& argument, const std::string& name, T& value) {
     if (argument.rfind(name + '=', 0) != 0) { return false; }
-    value = static_cast<T>(std::stod(argument.substr(name.size() + 1)));
-    return true;
+    const char* const digits = argument.c_str() + name.size() + 1;
+    char* end = nullptr;
+    const double number = std::strtod(digits, &end);
+    value = static_cast<T>(number);
+    return end != digits && *end == '\0' && number >= 0;
 }
 
 bool take(const std::string& argument, job& what) {
@@ -220,13 +230,15 @@ bool take(const std::string& argument, job& what) {
         what.controls = false;
     } else if (argument == "--no-trials") {
         what.trials = false;
+    } else if (argument == "--bounded") {
+        e.bounded = true;
     } else if (take(argument, "--method", what.first)) {
         what.last = what.first + 1;
     } else {
         return take(argument, "--pixels", e.pixels) || take(argument, "--pool", e.pool) ||
                take(argument, "--certificates", e.certificates) || take(argument, "--target", e.target) ||
                take(argument, "--noise", e.noise) || take(argument, "--class-probes", e.class_probes) ||
-               take(argument, "--budget", e.budget);
+               take(argument, "--budget", e.budget) || take(argument, "--width", e.width);
     }
     return true;
 }
@@ -260,12 +272,12 @@ int main(int argc, char** argv) {
         help(what.how);
         return 2;
     }
-    if (what.coverage) { print_head(); }
     for (const std::string& name : what.scenes) {
         if (!host::scenes::find<float>(name)) {
             std::fprintf(stderr, "calibration: no scene called %s\n", name.c_str());
             return 2;
         }
-        work(known_scene{*host::scenes::find<float>(name), what.how}, what);
     }
+    if (what.coverage) { print_head(); }
+    for (const std::string& name : what.scenes) { work(known_scene{*host::scenes::find<float>(name), what.how}, what); }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +14,8 @@
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
-#include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/progressive.hpp>
+#include <aglow/core/sobol.hpp>
 #include <aglow/report/audit.hpp>
 
 #include "common/light_set.hpp"
@@ -28,12 +29,14 @@ using rgb = glm::vec3;
 /// How much work goes into a calibration.
 struct effort {
     std::size_t pixels{64};     ///< width and height of the pictures
-    std::uint32_t pool{16384};  ///< samples per pixel of the pool
+    std::uint32_t pool{16384};  ///< samples per pixel of the pool; a power of two, or the one below is taken
     std::size_t certificates{200};
     double target{0};  ///< that audits are asked for; 0: 3 % below the true error
     double noise{aglow::audit_options{}.noise};
     std::size_t class_probes{aglow::audit_options{}.class_probes};
-    std::size_t budget{0};  ///< samples of an audit; 0: an eighth of the pool for each of its probes
+    bool bounded{false};     ///< whether audits are told how large a sample can be
+    std::size_t width{512};  ///< and height of the pictures whose work that of probes is compared with
+    std::size_t budget{0};   ///< samples of an audit; 0: an eighth of the pool for each of its probes
 };
 
 /// A scene, and a pool of unbiased samples of every pixel. What is true here is the mean of the pool and looks are
@@ -48,6 +51,7 @@ public:
 
     known_scene(const host::scene_description<float>& description, const effort& e)
         : name_{description.name}, effort_{e}, scene_{description}, tracer_{scene_, scene_.lights()} {
+        effort_.pool = std::bit_floor(std::max(e.pool, 256u));
         fill_pool();
         find_features();
         find_caustics();
@@ -76,14 +80,18 @@ public:
         return effort_.budget > 0 ? effort_.budget : 9 * probes * (effort_.pool / 8) / 8;
     }
 
-    /// The mean of `count` samples of a pixel: means of the pool, drawn at random, and what is left over traced anew.
+    /// The mean of `count` samples of a pixel: the largest sets of the pool that fit, drawn at random, and what is left
+    /// over traced anew.
     [[nodiscard]] rgb look(std::size_t pixel, std::uint64_t seed, std::size_t count) const {
-        const std::size_t whole = count / base;
-        const rgb* const own = &pool_[pixel * means()];
         rgb sum{};
-        for (std::size_t i = 0; i < whole; ++i) { sum += own[aglow::mix(seed, i) % means()]; }
-        sum *= static_cast<float>(base);
-        const std::size_t left = count % base;
+        std::size_t left = count;
+        std::uint64_t drawn = 0;
+        for (std::size_t size = largest(), level = levels() - 1; size >= smallest; size /= 2, --level) {
+            const rgb* const own = &pool_[level][pixel * (effort_.pool / size)];
+            for (; left >= size; left -= size) {
+                sum += own[aglow::mix(seed, ++drawn) % (effort_.pool / size)] * static_cast<float>(size);
+            }
+        }
         if (left > 0) { sum += trace(pixel, seed, left) * static_cast<float>(left); }
         return sum / static_cast<float>(count);
     }
@@ -106,31 +114,57 @@ public:
     }
 
 private:
-    static constexpr std::size_t base = 8;  // samples in a mean of the pool
+    static constexpr std::size_t smallest = 4;  // samples in a set of the pool
 
-    [[nodiscard]] std::size_t means() const { return effort_.pool / base; }
+    /// Samples in a set, at most: few sets would be drawn twice by one probe, whose noise then seems too small.
+    [[nodiscard]] std::size_t largest() const {
+        return std::max(smallest, std::bit_floor(static_cast<std::size_t>(effort_.pool) / 256));
+    }
+    [[nodiscard]] std::size_t levels() const { return static_cast<std::size_t>(std::bit_width(largest() / smallest)); }
 
-    [[nodiscard]] rgb trace(std::size_t pixel, std::uint64_t seed, std::size_t count) const {
-        const auto through = eye();
-        return aglow::pixel_probe{through, tracer_, effort_.pixels}(pixel, seed, count);
+    /// The mean of `count` samples from number `first` on of a sequence of the pixel's, as `aglow::pixel_probe` takes
+    /// them.
+    [[nodiscard]] rgb trace(std::size_t pixel, std::uint64_t seed, std::size_t count, std::size_t first = 0) const {
+        rgb sum{};
+        for (std::size_t i = first; i < first + count; ++i) {
+            const aglow::sobol_numbers<float> numbers{{aglow::mix(seed, 1), seed, pixel},
+                                                      static_cast<std::uint32_t>(i)};
+            const aglow::vec2<float> u = numbers.at(0, aglow::purpose::camera).next_2d();
+            const aglow::vec2<float> film{static_cast<float>(pixel % effort_.pixels) + u.x,
+                                          static_cast<float>(pixel / effort_.pixels) + u.y};
+            sum += tracer_(eye()(film), numbers).value;
+        }
+        return sum / static_cast<float>(count);
     }
 
+    /// All levels hold the same samples: a set is two sets of the level below, that lie side by side in a Sobol
+    /// sequence and are as well spread together as a look of that size.
     void fill_pool() {
         const std::size_t count = effort_.pixels * effort_.pixels;
-        pool_.resize(count * means());
         truth_.resize(3 * count);
-        aglow::own_threads{}(count, [&](std::size_t pixel) {
-            glm::dvec3 sum{};
-            for (std::size_t i = 0; i < means(); ++i) {
-                const rgb mean = trace(pixel, aglow::mix(2000, i), base);
-                pool_[pixel * means() + i] = mean;
-                sum += glm::dvec3{mean};
+        pool_.resize(levels());
+        for (std::size_t l = 0; l < levels(); ++l) { pool_[l].resize(count * (effort_.pool / (smallest << l))); }
+        aglow::own_threads{}(count, [&](std::size_t pixel) { fill_pool(pixel); });
+    }
+
+    void fill_pool(std::size_t pixel) {
+        const std::size_t per_sequence = largest() / smallest;
+        const std::size_t sets = effort_.pool / smallest;
+        glm::dvec3 sum{};
+        for (std::size_t i = 0; i < sets; ++i) {
+            const rgb mean = trace(pixel, aglow::mix(2000, i / per_sequence), smallest, i % per_sequence * smallest);
+            pool_[0][pixel * sets + i] = mean;
+            sum += glm::dvec3{mean};
+        }
+        for (std::size_t l = 1; l < levels(); ++l) {
+            const std::size_t own = sets >> l;
+            for (std::size_t i = 0; i < own; ++i) {
+                const rgb* const pair = &pool_[l - 1][2 * (pixel * own + i)];
+                pool_[l][pixel * own + i] = 0.5f * (pair[0] + pair[1]);
             }
-            for (int c = 0; c < 3; ++c) {
-                truth_[3 * pixel + static_cast<std::size_t>(c)] =
-                    static_cast<float>(sum[c] / static_cast<double>(means()));
-            }
-        });
+        }
+        sum /= static_cast<double>(sets);
+        for (int c = 0; c < 3; ++c) { truth_[3 * pixel + static_cast<std::size_t>(c)] = static_cast<float>(sum[c]); }
     }
 
     /// Pixels with another primitive within two of them.
@@ -170,7 +204,7 @@ private:
     host::scene<float> scene_;
     aglow::path_tracer<host::scene<float>, host::light_set<float>> tracer_;
     std::vector<float> truth_;
-    std::vector<rgb> pool_;  // [pixel][mean]
+    std::vector<std::vector<rgb>> pool_;  // [level][pixel][set], sets twice as large with each level
     std::vector<char> feature_;
     std::vector<char> caustic_;
 };

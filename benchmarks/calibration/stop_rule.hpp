@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <aglow/report/render_until.hpp>
-#include <aglow/report/running_mean.hpp>
 
 #include "case.hpp"
 
@@ -67,16 +66,15 @@ struct stop_tally {
     std::size_t unreachable{0};
     std::size_t out_of_work{0};
     std::size_t falsely{0};
-    std::vector<double> work{};         ///< picture and probes where it was reached, over the work of the oracle
-    aglow::running_mean probe_share{};  ///< of that work
+    std::vector<double> work{};          ///< picture and probes where it was reached, over the work of the oracle
+    std::vector<double> picture_work{};  ///< the same of the picture alone
 };
 
 /// One trial: the target is the error of the picture when the oracle's work is done, and the rule may do 8 times that.
 inline void try_to_stop(const known_scene& scene, const growing_picture& growing, double target, std::uint64_t seed,
                         stop_tally& into) {
-    // A path takes about twice as long as a sample of a picture; in pictures of 512 x 512, of which these are small
-    // ones.
-    constexpr double probe_work = 2.0 / (512 * 512);
+    // A path takes about twice as long as a sample of a picture; these are small ones of what would be larger.
+    const double probe_work = 2 / aglow::square(static_cast<double>(scene.how().width));
     const double oracle = growing.work(growing.within(target));
     std::size_t now = 0;
     const auto advance = [&](double work) {
@@ -94,7 +92,7 @@ inline void try_to_stop(const known_scene& scene, const growing_picture& growing
     into.falsely += growing.error(now) > target ? 1 : 0;
     const double probes = probe_work * static_cast<double>(end.probe_samples);
     into.work.push_back((growing.work(now) + probes) / oracle);
-    into.probe_share.add(probes / (growing.work(now) + probes));
+    into.picture_work.push_back(growing.work(now) / oracle);
 }
 
 /// Targets where an oracle needs 4 to 32 samples a pixel, spread evenly, on four pictures of `method`.
