@@ -58,11 +58,12 @@ public:
     }
     double estimate(std::span<const point> queries, std::size_t k) override {
         double sum = 0;
-        ask(queries, k, [&](const auto& found) {
+        const auto use = [&](const auto& found) {
             float light = 0;
             for (const aglow::kd_slot slot : found.slots) { light += look_at(map_->rest[slot]); }
             sum += static_cast<double>(light);
-        });
+        };
+        ask(queries, k, use, aglow::kd_accept_fetching<payload>{map_->rest});
         return sum;
     }
 
@@ -86,15 +87,17 @@ public:
     }
 
 private:
-    template <typename Use>
-    void ask(std::span<const point> queries, std::size_t k, Use&& use) {
+    template <typename Use, typename Accept = aglow::kd_accept_all>
+    void ask(std::span<const point> queries, std::size_t k, Use&& use, Accept accept = {}) {
         if (how_ == way::batched) {
-            map_->tree.nearest(queries, k, scratch_, {}, [&](std::size_t, const auto& found) { use(found); });
+            map_->tree.nearest(
+                queries, k, scratch_, {}, [&](std::size_t, const auto& found) { use(found); }, accept);
             return;
         }
         float last2 = 0;
         for (const point& q : queries) {
-            const auto found = map_->tree.nearest(q, k, scratch_, {.hint2 = how_ == way::hinted ? last2 : 0.0f});
+            const auto found =
+                map_->tree.nearest(q, k, scratch_, {.hint2 = how_ == way::hinted ? last2 : 0.0f}, accept);
             last2 = found.radius2;
             use(found);
         }

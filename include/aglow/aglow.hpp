@@ -38,6 +38,7 @@
 
 // containers: where things are
 #include <aglow/containers/cell_directory.hpp>
+#include <aglow/containers/kd_accept.hpp>
 #include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_cloud.hpp>

@@ -184,6 +184,39 @@ TEMPLATE_TEST_CASE("kd_tree: what is refused counts neither towards k nor the ra
     }
 }
 
+TEMPLATE_TEST_CASE("kd_tree: fetching the payload changes neither the items nor their order", "[kd_tree]", float,
+                   double) {
+    using T = TestType;
+    kd_scratch<T> scratch;
+    kd_scratch<T> other;
+    const auto same = [](const auto& a, const auto& b) {
+        return std::ranges::equal(a.slots, b.slots) && std::ranges::equal(a.distances2, b.distances2) &&
+               a.radius2 == b.radius2;
+    };
+    for (const std::string& shape : shapes) {
+        const auto points = cloud<T>(shape, 4000);
+        const auto tree = tree_of(points);
+        const std::vector<vec3<double>> payload(tree.size());
+        const kd_accept_fetching<vec3<double>> fetching{payload};
+        const auto where = queries(points);
+        for (const std::size_t k : {std::size_t{5}, std::size_t{40}, std::size_t{700}}) {
+            const auto check = [&](std::size_t i, const kd_neighbours<T>& found) {
+                CAPTURE(shape, k, i);
+                REQUIRE(same(found, tree.nearest(where[i], k, other)));
+                REQUIRE(same(found, tree.nearest(where[i], k, scratch, {}, fetching)));
+            };
+            kd_scratch<T> batch;
+            tree.nearest(where, k, batch, {}, check, fetching);
+        }
+        for (const vec3<T>& q : where) {
+            const auto one = tree.nearest_one(q, T(0.01), fetching);
+            const auto plain = tree.nearest_one(q, T(0.01));
+            REQUIRE(one.has_value() == plain.has_value());
+            if (one) { REQUIRE((one->slot == plain->slot && one->distance2 == plain->distance2)); }
+        }
+    }
+}
+
 TEMPLATE_TEST_CASE("kd_tree: the nearest one is the first of brute force, ties by index", "[kd_tree]", float, double) {
     using T = TestType;
     for (const std::string& shape : shapes) {

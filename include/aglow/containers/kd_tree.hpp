@@ -14,13 +14,13 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
 
+#include <aglow/containers/kd_accept.hpp>
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_cloud.hpp>
 #include <aglow/containers/kd_kernels.hpp>
@@ -34,9 +34,6 @@
 #include <aglow/core/vec.hpp>
 
 namespace aglow {
-
-/// The place of an item in a tree's own order, in [0, size()). Slots of near items are near each other.
-using kd_slot = std::uint32_t;
 
 /// How far a search looks.
 template <typename T>
@@ -77,19 +74,6 @@ class kd_scratch {
     std::vector<detail::kd_probe<T>> probes_{1};
     detail::kd_candidates<T> found_;
 };
-
-/// Accepts every item.
-struct kd_accept_all {
-    template <typename... Slot>
-    constexpr bool operator()(Slot...) const {
-        return true;
-    }
-};
-
-/// Something that says whether the item of a slot may be found: `accept(slot)`. It is asked only about items within
-/// the radius, maybe more than once for one search; what it refuses counts neither towards k nor towards the radius.
-template <typename F>
-concept KdAccept = std::predicate<F&, kd_slot>;
 
 /// Points that stay, of scalar `T`. It keeps positions and no items; an owner that stores its payload in the tree's
 /// order (`payload[slot] = items[order()[slot]]`) finds it where the search found the position.
@@ -168,38 +152,10 @@ private:
         return {count, limit, reach.hint2};
     }
 
-    template <typename Accept>
-    static constexpr bool accepts_all = std::is_same_v<std::remove_cvref_t<Accept>, kd_accept_all>;
-
     /// Of a thousand points at one place a search for k can use k, unless it may refuse them.
     template <typename Accept>
     static std::uint32_t enough(task what) {
-        return accepts_all<Accept> ? what.count : std::numeric_limits<std::uint32_t>::max();
-    }
-    template <typename Accept>
-    [[gnu::noinline]] static void refuse(void* caller, detail::kd_candidates<T>& found, std::uint32_t first) {
-        Accept& accept = *static_cast<Accept*>(caller);
-        std::uint32_t kept = first;
-        for (std::uint32_t i = first; i < found.count; ++i) {
-            found.distances2[kept] = found.distances2[i];
-            found.slots[kept] = found.slots[i];
-            kept += accept(found.slots[i]) ? 1u : 0u;
-        }
-        found.count = kept;
-    }
-    template <typename Accept>
-    [[gnu::noinline]] static bool accepts(void* caller, std::uint32_t slot) {
-        return (*static_cast<Accept*>(caller))(slot);
-    }
-    /// `accept` as the search takes it. The search leaves it where it is.
-    template <typename Accept>
-    static detail::kd_filter<T> filter_of(Accept& accept) {
-        if constexpr (accepts_all<Accept>) {
-            return {};
-        } else {
-            void* caller = const_cast<void*>(static_cast<const void*>(std::addressof(accept)));
-            return {caller, &refuse<Accept>, &accepts<Accept>};
-        }
+        return detail::kd_accepts_all<Accept> ? what.count : std::numeric_limits<std::uint32_t>::max();
     }
     static kd_neighbours<T> view(const detail::kd_candidates<T>& found, std::size_t k, T farthest, kd_reach<T> reach) {
         return {{found.slots.data(), found.count},
@@ -255,7 +211,7 @@ kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scr
     detail::kd_probe<T>& probe = scratch.probes_.front();
     probe.point = point;
     probe.enough = enough<Accept>(what);
-    const T farthest = detail::search<runner>(tree_, probe, what, scratch.found_, filter_of(accept));
+    const T farthest = detail::search<runner>(tree_, probe, what, scratch.found_, detail::filter_of<T>(accept));
     return view(scratch.found_, k, farthest, reach);
 }
 
@@ -280,7 +236,12 @@ void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scra
         runner::template run<detail::approach_kernel>(tree_, probes, what, std::span<T>{radius2});
         for (std::size_t i = 0; i < probes.size(); ++i) {
             auto accepts_here = [&, at = first + i](kd_slot slot) { return accept(at, slot); };
-            const auto filter = accepts_all<Accept> ? detail::kd_filter<T>{} : filter_of(accepts_here);
+            detail::kd_filter<T> filter;
+            if constexpr (detail::kd_accepts_all<Accept>) {
+                filter = detail::filter_of<T>(accept);
+            } else {
+                filter = detail::filter_of<T>(accepts_here);
+            }
             const T farthest = detail::find_nearest<runner>(tree_, probes[i], what.count, radius2[i], what.limit,
                                                             scratch.found_, filter);
             visit(first + i, view(scratch.found_, k, farthest, reach));
@@ -297,7 +258,8 @@ std::optional<kd_found<T>> kd_tree<T>::nearest_one(const vec3<T>& point, T radiu
     probe.point = point;
     probe.enough = enough<Accept>(what);
     probe.at_home = true;
-    const auto best = runner::template run<detail::nearest_one_kernel>(tree_, probe, what.limit, filter_of(accept));
+    const auto best =
+        runner::template run<detail::nearest_one_kernel>(tree_, probe, what.limit, detail::filter_of<T>(accept));
     if (!best.found) { return std::nullopt; }
     return kd_found<T>{best.slot, best.distance2};
 }
