@@ -1,5 +1,6 @@
 // Our own tree with the instructions of one machine alone, compiled by that machine's flags: how much of its speed is
 // left on older ones. RIVALS_ENGINE is the pack, RIVALS_ENGINE_NAME what the table calls it.
+#include <aglow/containers/kd_accept.hpp>
 #include <aglow/containers/kd_build.hpp>
 #include <aglow/containers/kd_kernels.hpp>
 
@@ -12,6 +13,9 @@ namespace kd = aglow::detail;
 using pack = aglow::simd::packs_of<float>::RIVALS_ENGINE;
 /// A type of its own, so that no other flags' code stands in for it.
 struct runner : kd::kd_pack_runner<pack> {};
+struct fetching : aglow::kd_accept_fetching<payload> {
+    using kd_accept_fetching::kd_accept_fetching;
+};
 
 class engine : public contender {
 public:
@@ -45,8 +49,9 @@ public:
     }
     double estimate(std::span<const point> queries, std::size_t k) override {
         double sum = 0;
+        const fetching early{rest_};
         for (const point& q : queries) {
-            ask(q, k);
+            ask(q, k, kd::filter_of<float>(early));
             float light = 0;
             for (std::uint32_t i = 0; i < found_.count; ++i) { light += look_at(rest_[found_.slots[i]]); }
             sum += static_cast<double>(light);
@@ -75,12 +80,12 @@ public:
 private:
     static constexpr float most = std::numeric_limits<float>::max();
 
-    float ask(const point& q, std::size_t k) {
+    float ask(const point& q, std::size_t k, const kd::kd_filter<float>& filter = {}) {
         const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(k, tree_.size));
         found_.reserve(2 * std::size_t{count} + 1024);
         probe_.point = q;
         probe_.enough = count;
-        return kd::search<runner>(tree_, probe_, kd::kd_task<float>{count, most, 0}, found_, filter_);
+        return kd::search<runner>(tree_, probe_, kd::kd_task<float>{count, most, 0}, found_, filter);
     }
     kd::kd_best<float> ask_one(const point& q) {
         probe_.point = q;
