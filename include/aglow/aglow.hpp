@@ -19,6 +19,8 @@
 #include <aglow/core/simd_avx2.hpp>
 #include <aglow/core/simd_avx512.hpp>
 #include <aglow/core/simd_best.hpp>
+#include <aglow/core/simd_eight.hpp>
+#include <aglow/core/simd_eight_avx2.hpp>
 #include <aglow/core/simd_pair.hpp>
 #include <aglow/core/simd_sse.hpp>
 #include <aglow/core/simd_tables.hpp>

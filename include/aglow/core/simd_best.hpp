@@ -112,8 +112,8 @@ auto call(Arguments&&... arguments) {
 }
 
 template <typename T, typename Kernel, typename... Arguments>
-[[gnu::always_inline]] inline auto run_best(Arguments&&... arguments) {
-    return Kernel::template run<plain<T>>(arguments...);
+auto run_best(Arguments&&... arguments) {
+    return Kernel::template run<typename packs_of<T>::any>(arguments...);
 }
 
 #endif

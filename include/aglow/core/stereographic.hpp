@@ -19,8 +19,8 @@ public:
     template <typename T>
     explicit stereographic(const vec3<T>& v) {
         const T scale = 1 / (std::sqrt(length2(v)) + std::abs(v.z));
-        x_ = static_cast<std::int16_t>(std::lround(v.x * scale * T(steps_x)));
-        y_ = static_cast<std::int16_t>(2 * std::lround(v.y * scale * T(steps_y)) + (v.z < 0 ? 1 : 0));
+        x_ = static_cast<std::int16_t>(std::lround(v.x * scale * T(32767)));
+        y_ = static_cast<std::int16_t>(2 * std::lround(v.y * scale * T(16383)) + (v.z < 0 ? 1 : 0));
     }
 
     template <typename T>
@@ -35,8 +35,8 @@ public:
     /// The same from the integers it is kept as.
     template <typename T>
     [[nodiscard]] static tilt<T> turned(int x, int y) {
-        const T u = static_cast<T>(x) * (T(1) / T(steps_x));
-        const T v = static_cast<T>(y >> 1) * (T(1) / T(steps_y));
+        const T u = static_cast<T>(x) * step_x<T>;
+        const T v = static_cast<T>(y >> 1) * step_y<T>;
         const T side = static_cast<T>(1 - 2 * (y & 1));
         const T half = (1 + u * u + v * v) / 2;
         const T scale = 1 / half;
@@ -48,12 +48,15 @@ public:
         return {{u * scale, v * scale, side * height}, side, -side * inside};
     }
 
+    /// What the integers count.
+    template <typename T>
+    static constexpr T step_x = T(1) / T(32767);
+    template <typename T>
+    static constexpr T step_y = T(1) / T(16383);  ///< of all bits but the last, which tells the hemisphere
+
     friend bool operator==(const stereographic&, const stereographic&) = default;
 
 private:
-    static constexpr int steps_x = 32767;
-    static constexpr int steps_y = 16383;  // the last bit tells the hemisphere
-
     std::int16_t x_{0};
     std::int16_t y_{0};
 };

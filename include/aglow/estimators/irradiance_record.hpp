@@ -56,8 +56,9 @@ public:
     }
     template <typename T>
     [[nodiscard]] static vec2<T> value(int x, int y) {
-        return {static_cast<T>(x) * T(0x1p-15), static_cast<T>(y) * T(0x1p-15)};
+        return {static_cast<T>(x) * T(step), static_cast<T>(y) * T(step)};
     }
+    static constexpr float step = 0x1p-15f;
 
 private:
     template <typename T>

@@ -130,9 +130,9 @@ private:
 
         void add(const lane_sums& lanes) {
             light = light + detail::light_of<S>(lanes);
-            weight += lane_sums::total(lanes.weight);
-            error += lane_sums::total(lanes.error);
-            variance += lane_sums::total(lanes.variance);
+            weight += lanes.parts[lanes.parts.size() - 2];
+            error += lanes.parts.back();
+            variance += lanes.variance;
             records += lanes.records;
         }
     };
@@ -140,15 +140,17 @@ private:
     template <typename ItemAt, typename Judged>
     void add_eight(std::size_t first, std::size_t some, const ItemAt& item_at, const Judged& judged) {
         using record = std::remove_cvref_t<decltype(item_at(first).record)>;
-        std::array<const record*, eight> records;
-        std::array<T, eight> bends;
+        const char* records[eight];
+        T bends[eight];
+        std::int32_t verdicts[eight];
         for (std::size_t i = 0; i < eight; ++i) {
             decltype(auto) item = item_at(first + (i < some ? i : 0));
-            records[i] = &item.record;
+            records[i] = reinterpret_cast<const char*>(&item.record);
             bends[i] = item.bend;
         }
-        const auto verdicts = detail::add_eight(records, bends, some, point_, normal_, limits_, lanes_);
-        for (std::size_t i = 0; i < some; ++i) { judged(verdicts[i]); }
+        simd::run_best<simd::eight, detail::add_eight<S, record::features>>(&records[0], &bends[0], some, point_,
+                                                                            normal_, limits_, lanes_, &verdicts[0]);
+        for (std::size_t i = 0; i < some; ++i) { judged(static_cast<detail::verdict>(verdicts[i])); }
     }
 
     template <record_features F>

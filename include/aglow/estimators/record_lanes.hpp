@@ -1,17 +1,16 @@
 // Eight records of gray or RGB light side by side, so that a blend weighs them all at once.
+//
+// What `look`, `record_weight` and `compact_gradients` say of one record, in vectors of eight.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 #include <utility>
 
-#include <aglow/core/numbers.hpp>
+#include <aglow/core/simd_eight.hpp>
 #include <aglow/core/stereographic.hpp>
 #include <aglow/core/vec.hpp>
 #include <aglow/estimators/compact_gradients.hpp>
@@ -24,23 +23,12 @@ namespace aglow::detail {
 template <typename S, typename T>
 inline constexpr bool has_lanes = std::same_as<T, float>&& packed_bands<S> > 0;
 
-/// What a blend sums up, by lane: the i-th of each eight records goes into lane i.
+/// What a blend sums up. The sums over eight records have a fixed order.
 template <std::size_t Bands>
 struct lane_sums {
-    static constexpr std::size_t count = 8;
-    float light[Bands][count]{};
-    float weight[count]{};
-    float error[count]{};
-    double variance[count]{};  ///< squares of faint light leave the range of floats
+    std::array<float, Bands + 2> parts{};  ///< light by band, weight, error
+    double variance{};                     ///< squares of faint light leave the range of floats
     std::uint32_t records{0};
-
-    /// The sum over the lanes, in a fixed order.
-    template <typename X>
-    [[nodiscard]] static X total(const X (&lane)[count]) {
-        X half[4];
-        for (std::size_t i = 0; i < 4; ++i) { half[i] = lane[i] + lane[i + 4]; }
-        return (half[0] + half[2]) + (half[1] + half[3]);
-    }
 };
 
 /// The sums of lanes for such light; `Without` where it has no lanes.
@@ -50,9 +38,9 @@ using lanes_or = std::conditional_t<has_lanes<S, T>, lane_sums<packed_bands<S> =
 template <typename S>
 [[nodiscard]] S light_of(const lane_sums<packed_bands<S>>& sums) {
     if constexpr (packed_bands<S> == 1) {
-        return sums.total(sums.light[0]);
+        return sums.parts[0];
     } else {
-        return {sums.total(sums.light[0]), sums.total(sums.light[1]), sums.total(sums.light[2])};
+        return {sums.parts[0], sums.parts[1], sums.parts[2]};
     }
 }
 
@@ -69,228 +57,188 @@ struct record_words {
     static constexpr std::size_t count = slopes + (F.gradients ? 2 * Bands : 0);
 };
 
-/// Eight records as they are kept, the same word of all side by side. The loops below run over lanes alone and take no
-/// branch, which is how a compiler likes them.
+/// Three vectors of `V`: a point or a direction in each lane.
+template <typename V>
+struct lane_points {
+    V x, y, z;
+
+    [[gnu::always_inline]] static lane_points all(const vec3<float>& p) {
+        return {V::all(p.x), V::all(p.y), V::all(p.z)};
+    }
+    [[gnu::always_inline]] static lane_points difference(const lane_points& a, const lane_points& b) {
+        return {a.x - b.x, a.y - b.y, a.z - b.z};
+    }
+    [[gnu::always_inline]] static V dot(const lane_points& a, const lane_points& b) {
+        return a.x * b.x + a.y * b.y + a.z * b.z;
+    }
+};
+
+/// `tilt` in lanes.
+template <typename V>
+struct lane_tilts {
+    lane_points<V> normal;
+    V side, a;
+
+    /// Of a `stereographic`'s codes.
+    [[gnu::always_inline]] static lane_tilts of(const typename V::words& codes) {
+        using words = typename V::words;
+        const words second = words::last_half(codes);
+        const V one = V::all(1), zero = V::all(0), half = V::all(0.5f);
+        const V u = V::of(words::first_half(codes)) * V::all(stereographic::step_x<float>);
+        const V v = V::of(second >> 1) * V::all(stereographic::step_y<float>);
+        const V side = one - V::of((second & words::all(1)) << 1);
+        const V middle = (one + u * u + v * v) * half;
+        const V scale = one / middle;
+        return {{u * scale, v * scale, side * V::max(scale - one, zero)}, side, zero - side * V::min(middle, one)};
+    }
+    [[gnu::always_inline]] lane_points<V> to_local(const lane_points<V>& v) const {
+        const V along = normal.x * v.x + normal.y * v.y;
+        const V lean = a * along - v.z;
+        return {v.x + side * (normal.x * lean), side * v.y + normal.y * lean, along + normal.z * v.z};
+    }
+};
+
+/// Adds what the first `some` of eight records say of a point to `sums`, and tells each one's verdict.
 template <typename S, record_features F>
-class record_lanes {
+class add_eight {
 public:
-    static constexpr std::size_t count = 8;
     static constexpr std::size_t bands = packed_bands<S>;
     using record = irradiance_record<S, float, F>;
-    using items = std::array<const record*, count>;
+    using sums = lane_sums<bands>;
 
     /// Expects good addresses in all eight.
-    [[gnu::always_inline]] record_lanes(const items& records, const std::array<float, count>& bends) : bend_{bends} {
+    template <typename V>
+    [[gnu::always_inline]] static void run(const char* const* records, const float* bends, std::size_t some,
+                                           const vec3<float>& point, const vec3<float>& normal,
+                                           const lookup_limits<float>& limits, sums& all, std::int32_t* judged) {
         static_assert(std::is_trivially_copyable_v<record> && std::is_standard_layout_v<record>);
-        static_assert(F.incident || sizeof(record) == sizeof(word) * at::count);
-#if defined(__GNUC__)
-        for (std::size_t first = 0; first < by_four; first += 4) { turn_four(records, first); }
-#endif
-        for (std::size_t w = by_four; w < at::count; ++w) {
-            for (std::size_t i = 0; i < count; ++i) {
-                std::memcpy(&words_[w][i], reinterpret_cast<const char*>(records[i]) + w * sizeof(word), sizeof(word));
-            }
-        }
-    }
-
-    /// Adds what the first `some` of them say of a point to `sums`; gives each one's verdict.
-    [[gnu::always_inline]] std::array<verdict, count> add_to(lane_sums<bands>& sums, std::size_t some,
-                                                             const vec3<float>& point, const vec3<float>& normal,
-                                                             const lookup_limits<float>& limits) const {
-        seen s;
-        look_at(s, some, point, normal, limits);
-        weigh(s, limits);
-        add(s, sums, std::make_index_sequence<bands>{});
-        std::array<verdict, count> judged;
-        for (std::size_t i = 0; i < count; ++i) { judged[i] = static_cast<verdict>(s.judged[i]); }
-        return judged;
+        static_assert(F.incident || sizeof(record) == sizeof(std::int32_t) * at::count);
+        typename V::words words[at::count];
+        read(records, words);
+        seen<V> s = look<V>(words, point, normal, limits);
+        s.weight = weight(limits.metric, s.t2, s.turn);
+        const auto used = V::words::below(some) & s.good & (V::all(0) < s.weight);
+        V::words::store(judged, V::words::pick(used, is<typename V::words>(verdict::used), s.judged));
+        add(words, s, used, V::load(bends), all, std::make_index_sequence<bands>{});
     }
 
 private:
-    using word = std::int32_t;
     using at = record_words<bands, F>;
     using slopes = compact_gradients<S, float>;
-#if defined(__GNUC__)
-    static constexpr std::size_t by_four = at::count / 4 * 4;
-#else
-    static constexpr std::size_t by_four = 0;
-#endif
 
     /// A point as each lane sees it.
+    template <typename V>
     struct seen {
-        word judged[count];
-        float t2[count], turn[count], weight[count];
-        float offset[4][count];
+        typename V::words judged, good;
+        V t2, turn, weight;
+        V offset[4];
     };
 
-    /// The two numbers of sixteen bits in a word, in the order of their addresses.
-    [[nodiscard]] static word half(word w, std::size_t which) {
-        return (which == 0) == (std::endian::native == std::endian::little)
-                   ? static_cast<word>(static_cast<std::uint32_t>(w) << 16) >> 16
-                   : w >> 16;
-    }
-
-#if defined(__GNUC__)
-    /// Four words of eight records: four by four are turned in each half of a register.
-    [[gnu::always_inline]] void turn_four(const items& records, std::size_t first) {
-        using four [[gnu::vector_size(16)]] = word;
-        using eight [[gnu::vector_size(32)]] = word;
-        eight row[4], pair[4], turned[4];
-        for (std::size_t i = 0; i < 4; ++i) {
-            four low, high;
-            std::memcpy(&low, reinterpret_cast<const char*>(records[i]) + first * sizeof(word), sizeof(low));
-            std::memcpy(&high, reinterpret_cast<const char*>(records[i + 4]) + first * sizeof(word), sizeof(high));
-            row[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-        }
-        for (std::size_t i = 0; i < 4; i += 2) {
-            pair[i] = __builtin_shufflevector(row[i], row[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-            pair[i + 1] = __builtin_shufflevector(row[i], row[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-        }
-        for (std::size_t i = 0; i < 2; ++i) {
-            turned[2 * i] = __builtin_shufflevector(pair[i], pair[i + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-            turned[2 * i + 1] = __builtin_shufflevector(pair[i], pair[i + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-        }
-        for (std::size_t i = 0; i < 4; ++i) { std::memcpy(words_[first + i], &turned[i], sizeof(eight)); }
-    }
-#endif
-
-    [[nodiscard, gnu::always_inline]] float number(std::size_t w, std::size_t i) const {
-        return std::bit_cast<float>(words_[w][i]);
-    }
-    [[nodiscard, gnu::always_inline]] record_shape<float> shape(std::size_t i) const {
-        const word normal = words_[at::normal][i], ellipse = F.ellipse ? words_[at::ellipse][i] : 0;
-        return {{number(at::position, i), number(at::position + 1, i), number(at::position + 2, i)},
-                number(at::radius, i),
-                stereographic::turned<float>(half(normal, 0), half(normal, 1)),
-                compact_ellipse::value<float>(half(ellipse, 0), half(ellipse, 1))};
-    }
-
-    [[gnu::always_inline]] void look_at(seen& s, std::size_t some, const vec3<float>& point, const vec3<float>& normal,
-                                        const lookup_limits<float>& limits) const {
-        const vec3<float> p = point, n = normal;
-        const lookup_limits<float> within = limits;
-        const word last = static_cast<word>(some);
-        for (std::size_t i = 0; i < count; ++i) {
-            const record_view<float> view = look(shape(i), p, n, within);
-            s.judged[i] = static_cast<word>(i) < last ? static_cast<word>(view.judged) : word(verdict::distance);
-            s.t2[i] = view.t2;
-            s.turn[i] = view.turn / within.turn;
-            const auto k = slopes::factors({view.local.x, view.local.y, -view.normal.y, view.normal.x});
-            s.offset[0][i] = k[0], s.offset[1][i] = k[1], s.offset[2][i] = k[2], s.offset[3][i] = k[3];
+    template <typename Words>
+    [[gnu::always_inline]] static void read(const char* const* records, Words* words) {
+        constexpr std::size_t by_four = at::count / 4 * 4;
+        for (std::size_t w = 0; w < by_four; w += 4) { Words::columns(records, w * sizeof(std::int32_t), words + w); }
+        for (std::size_t w = by_four; w < at::count; ++w) {
+            words[w] = Words::column(records, w * sizeof(std::int32_t));
         }
     }
 
-    [[gnu::always_inline]] static void weigh(seen& s, const lookup_limits<float>& limits) {
-        switch (limits.metric) {
-            case error_metric::hessian: return weigh<error_metric::hessian>(s);
-            case error_metric::nearest_distance: return weigh<error_metric::nearest_distance>(s);
-            case error_metric::split_sphere: return weigh<error_metric::split_sphere>(s);
-        }
+    template <typename V, typename Words>
+    [[gnu::always_inline]] static seen<V> look(const Words* words, const vec3<float>& point, const vec3<float>& normal,
+                                               const lookup_limits<float>& limits) {
+        const lane_points<V> n = lane_points<V>::all(normal);
+        const V radius = V::from_bits(words[at::radius]);
+        const lane_tilts<V> facing = lane_tilts<V>::of(words[at::normal]);
+        const lane_points<V> way = lane_points<V>::difference(
+            lane_points<V>::all(point), {V::from_bits(words[at::position]), V::from_bits(words[at::position + 1]),
+                                         V::from_bits(words[at::position + 2])});
+        const lane_points<V> along = facing.to_local(way);
+        const lane_points<V> bent = lane_points<V>::difference(n, facing.normal);
+        const V turn = lane_points<V>::dot(bent, bent) * V::all(0.5f);
+        const V height = (lane_points<V>::dot(way, n) + along.z) * V::all(0.5f);
+        const V scale = V::all(1) / radius;
+        const lane_points<V> local{along.x * scale, along.y * scale, along.z * scale};
+        const lane_points<V> turned = facing.to_local(n);
+        seen<V> s;
+        s.t2 = distance2(words, local);
+        s.turn = turn * V::all(1 / limits.turn);
+        const auto near = s.t2 < V::all(1);
+        const auto level = V::abs(height) <= V::all(limits.plane) * radius;
+        const auto alike = turn < V::all(limits.turn);
+        s.good = near & level & alike;
+        s.judged = Words::pick(alike, Words::pick(level, is<Words>(verdict::distance), is<Words>(verdict::plane)),
+                               is<Words>(verdict::normal));
+        const std::array<float, 4> k = slopes::factors({1, 1, 1, 1});
+        s.offset[0] = local.x * V::all(k[0]);
+        s.offset[1] = local.y * V::all(k[1]);
+        s.offset[2] = turned.y * V::all(-k[2]);
+        s.offset[3] = turned.x * V::all(k[3]);
+        return s;
     }
-    /// What is not used is seen from where the record is, so that nothing in it can grow beyond numbers.
-    template <error_metric Metric>
-    [[gnu::always_inline]] static void weigh(seen& s) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const float weight = record_weight<Metric>(s.t2[i], s.turn[i]);
-            const word beyond = weight > 0 ? word(verdict::used) : word(verdict::distance);
-            const word judged = s.judged[i] == word(verdict::used) ? beyond : s.judged[i];
-            s.judged[i] = judged;
-            s.weight[i] = judged == word(verdict::used) ? weight : 0.0f;
-            s.t2[i] = judged == word(verdict::used) ? s.t2[i] : 0.0f;
+
+    template <typename Words>
+    [[gnu::always_inline]] static Words is(verdict v) {
+        return Words::all(static_cast<std::int32_t>(v));
+    }
+
+    template <typename Words, typename V>
+    [[gnu::always_inline]] static V distance2(const Words* words, const lane_points<V>& p) {
+        V flat = p.x * p.x + p.y * p.y;
+        if constexpr (F.ellipse) {
+            const V step = V::all(compact_ellipse::step);
+            const V x = V::of(Words::first_half(words[at::ellipse])) * step;
+            const V y = V::of(Words::last_half(words[at::ellipse])) * step;
+            const V along = x * p.x + y * p.y;
+            flat = V::max(flat - along * along, V::all(0));
         }
-        for (auto& offset : s.offset) {
-            for (std::size_t i = 0; i < count; ++i) {
-                offset[i] = s.judged[i] == word(verdict::used) ? offset[i] : 0.0f;
-            }
-        }
+        return flat + p.z * p.z;
+    }
+
+    template <typename V>
+    [[gnu::always_inline]] static V weight(error_metric metric, const V& t2, const V& turn) {
+        const V one = V::all(1), t = V::root(t2);
+        if (metric == error_metric::hessian) { return (one - t) * (one - turn); }
+        const V bend = V::root(turn);
+        if (metric == error_metric::nearest_distance) { return one - V::max(t, bend); }
+        return one - t - bend;
     }
 
     /// How the light of band `B` goes on, relative to what it is: `compact_gradients::extrapolate`.
-    template <std::size_t B>
-    [[gnu::always_inline]] void find_change(const seen& s, float (&change)[count]) const {
-        for (std::size_t i = 0; i < count; ++i) {
-            change[i] = code<B>(i) * s.offset[0][i] + code<bands + B>(i) * s.offset[1][i] +
-                        (code<2 * bands + B>(i) * s.offset[2][i] + code<3 * bands + B>(i) * s.offset[3][i]);
+    template <std::size_t B, typename Words, typename V>
+    [[gnu::always_inline]] static V change(const Words* words, const seen<V>& s) {
+        if constexpr (F.gradients) {
+            return code<B, V>(words) * s.offset[0] + code<bands + B, V>(words) * s.offset[1] +
+                   (code<2 * bands + B, V>(words) * s.offset[2] + code<3 * bands + B, V>(words) * s.offset[3]);
+        } else {
+            return V::all(0);
         }
     }
-    template <std::size_t Code>
-    [[nodiscard, gnu::always_inline]] float code(std::size_t i) const {
-        return static_cast<float>(F.gradients ? half(words_[at::slopes + Code / 2][i], Code % 2) : 0);
-    }
-
-    /// Takes the extremes of a band into account.
-    template <std::size_t B>
-    [[gnu::always_inline]] void widen(const float (&change)[count], float (&least)[count], float (&most)[count]) const {
-        for (std::size_t i = 0; i < count; ++i) {
-            const float light = number(at::light + B, i);
-            least[i] = change[i] < least[i] ? change[i] : least[i];
-            most[i] = light > most[i] ? light : most[i];
-        }
-    }
-    template <std::size_t B>
-    [[gnu::always_inline]] void add_light(const seen& s, const float (&change)[count], const float (&damping)[count],
-                                          float (&sum)[count]) const {
-        for (std::size_t i = 0; i < count; ++i) {
-            const float light = number(at::light + B, i);
-            sum[i] += s.weight[i] * (light + light * change[i] * damping[i]);
-        }
+    template <std::size_t Code, typename V, typename Words>
+    [[gnu::always_inline]] static V code(const Words* words) {
+        const Words both = words[at::slopes + Code / 2];
+        return V::of(Code % 2 == 0 ? Words::first_half(both) : Words::last_half(both));
     }
 
-    /// Bands by number, since a loop over them that is left as one would stand between the others.
-    template <std::size_t... B>
-    [[gnu::always_inline]] void add(const seen& s, lane_sums<bands>& sums, std::index_sequence<B...>) const {
-        lane_sums<bands> all = sums;  // a copy, which nothing that is read can be
-        float change[bands][count], least[count], most[count];
-        for (std::size_t i = 0; i < count; ++i) { least[i] = slopes::lowest, most[i] = number(at::light, i); }
-        (find_change<B>(s, change[B]), ...);
-        (widen<B>(change[B], least, most), ...);
-        for (std::size_t i = 0; i < count; ++i) { least[i] = slopes::drop(least[i]); }
-        for (std::size_t i = 0; i < count; ++i) { least[i] = slopes::lowest / least[i]; }
-        (add_light<B>(s, change[B], least, all.light[B]), ...);
-        float noise[count];
-        for (std::size_t i = 0; i < count; ++i) {
-            const float scale = s.weight[i] * most[i];
-            all.weight[i] += s.weight[i];
-            all.error[i] += scale * (s.t2[i] * bend_[i]);
-            noise[i] = scale * compact_noise::noise<float>(F.noise ? half(words_[at::noise][i], 0) & 0xffff : 0);
+    template <typename Words, typename V, std::size_t... B>
+    [[gnu::always_inline]] static void add(const Words* words, const seen<V>& s, const Words& used, const V& bend,
+                                           sums& all, std::index_sequence<B...>) {
+        const V changes[bands] = {change<B>(words, s)...};
+        const V light[bands] = {V::from_bits(words[at::light + B])...};
+        V least = changes[0], most = light[0];
+        ((least = V::min(least, changes[B]), most = V::max(most, light[B])), ...);
+        // slopes::drop: least < -lowest ? -least : lowest
+        const V lowest = V::all(slopes::lowest);
+        const V damping = lowest / V::max(lowest, V::all(0) - least);
+        const V scale = s.weight * most;
+        const V parts[bands + 2] = {V::where(used, s.weight * (light[B] + light[B] * changes[B] * damping))...,
+                                    V::where(used, s.weight), V::where(used, scale * (s.t2 * bend))};
+        V::add_sums(parts, all.parts);
+        if constexpr (F.noise) {
+            const V code = V::of(words[at::noise] & Words::all(0xffff));
+            all.variance += V::sum_of_squares(V::where(used, scale * (code / V::max(V::all(65534) - code, V::all(1)))));
         }
-        for (std::size_t i = 0; i < count; ++i) {
-            all.variance[i] += static_cast<double>(noise[i]) * static_cast<double>(noise[i]);
-        }
-        word used = 0;
-        for (std::size_t i = 0; i < count; ++i) { used += s.judged[i] == word(verdict::used) ? 1 : 0; }
-        all.records += static_cast<std::uint32_t>(used);
-        sums = all;
+        all.records += Words::count_of(used);
     }
-
-    alignas(32) word words_[at::count][count];
-    std::array<float, count> bend_;
 };
-
-/// Adds what the first `some` of eight records say of a point to `sums`; gives each one's verdict.
-template <typename S, record_features F>
-[[gnu::always_inline]] inline std::array<verdict, 8> add_lanes(
-    const std::array<const irradiance_record<S, float, F>*, 8>& records, const std::array<float, 8>& bends,
-    std::size_t some, const vec3<float>& point, const vec3<float>& normal, const lookup_limits<float>& limits,
-    lane_sums<packed_bands<S>>& sums) {
-    return record_lanes<S, F>{records, bends}.add_to(sums, some, point, normal, limits);
-}
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
-template <typename... Arguments>
-[[gnu::target("avx2"), gnu::flatten, gnu::noinline]] std::array<verdict, 8> add_wide(Arguments&... arguments) {
-    return add_lanes(arguments...);
-}
-#endif
-
-/// The same, all eight at once where the machine has the registers for it. A function of its own, or else a compiler
-/// loses sight of what is apart in memory, and takes lane after lane.
-template <typename... Arguments>
-[[gnu::noinline]] std::array<verdict, 8> add_eight(Arguments&... arguments) {
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
-    if (__builtin_cpu_supports("avx2")) { return add_wide(arguments...); }
-#endif
-    return add_lanes(arguments...);
-}
 
 }  // namespace aglow::detail
