@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <aglow/containers/cell_directory.hpp>
@@ -33,6 +34,7 @@ public:
             roots_.push_back(plant(alike, boxes));
         }
         blocks_.shrink_to_fit();
+        items_.shrink_to_fit();
         nodes_.shrink_to_fit();
         directory_ =
             cell_directory<T>{boxes, [&](std::uint32_t i, const bounds<T>& cell) { return meets(blocks_[i], cell); }};
@@ -72,26 +74,24 @@ public:
     /// Calls `visitor(const stored_sphere<T>&)` for every sphere.
     template <typename Visitor>
     void visit_all(Visitor&& visitor) const {
-        for (const block& b : blocks_) {
-            for (unsigned i = 0; i < lanes && b.limit2[i] > 0; ++i) { visitor(b.at(i)); }
+        for (std::uint32_t place = 0; place < blocks_.size() * lanes; ++place) {
+            const block& b = blocks_[place / lanes];
+            const std::uint32_t i = place % lanes;
+            if (b.limit2[i] > 0) { visitor(sphere{b.centre(i), b.limit2[i], item_at(place)}); }
         }
     }
 
-    /// Gives every sphere the number `next(its item)` instead, asked for in an order in which neighbours follow each
-    /// other: for an owner who lays out his items likewise.
-    template <typename Next>
-    void renumber(Next&& next) {
-        for (block& b : blocks_) {
-            for (unsigned i = 0; i < lanes && b.limit2[i] > 0; ++i) { b.item[i] = next(b.item[i]); }
-        }
-    }
+    /// Which items these are, by place: neighbours follow each other, and a few places are `none`. From now on a find
+    /// is a place: for an owner who lays out his items likewise.
+    [[nodiscard]] std::vector<std::uint32_t> hand_out_items() { return std::exchange(items_, {}); }
+    static constexpr std::uint32_t none = 0xffffffffu;
 
     [[nodiscard]] std::size_t size() const { return size_; }
 
     /// Bytes taken from the heap.
     [[nodiscard]] std::size_t bytes() const {
-        return blocks_.capacity() * sizeof(block) + nodes_.capacity() * sizeof(node) +
-               roots_.capacity() * sizeof(std::uint32_t) + directory_.bytes();
+        return blocks_.capacity() * sizeof(block) + items_.capacity() * sizeof(std::uint32_t) +
+               nodes_.capacity() * sizeof(node) + roots_.capacity() * sizeof(std::uint32_t) + directory_.bytes();
     }
 
 private:
@@ -99,7 +99,7 @@ private:
     // Where a cell lists more blocks than this, the trees are faster.
     static constexpr std::size_t crowded = 96;
     using sphere = stored_sphere<T>;
-    struct alignas(64) block : sphere_block<T, lanes> {};
+    struct alignas(64) block : sphere_lanes<T, lanes> {};
 
     // Boxes of sixteen children, blocks or nodes, from number `first` on; in steps of 1/255 of the box around them all.
     struct alignas(64) node {
@@ -119,10 +119,20 @@ private:
 
     template <bool D>
     void ask_lists(std::uint32_t list, const covering_question<T>& question, sphere_hits<T, D>& found) const {
-        directory_.visit_lists(list, [&](const std::uint32_t* numbers, std::uint32_t count) {
-            simd::run_best<T, ask_blocks>(blocks_.data(), numbers, count, question, found);
-        });
+        directory_.visit_lists(
+            list, [&](const std::uint32_t* numbers, std::uint32_t count) { ask(numbers, count, question, found); });
     }
+
+    template <typename Question, bool D>
+    void ask(const std::uint32_t* numbers, std::uint32_t count, const Question& question,
+             sphere_hits<T, D>& found) const {
+        const std::size_t known = found.size();
+        simd::run_best<T, ask_blocks>(blocks_.data(), numbers, count, question, found);
+        if (!items_.empty()) {
+            found.rename(known, [this](std::uint32_t place) { return items_[place]; });
+        }
+    }
+    [[nodiscard]] std::uint32_t item_at(std::uint32_t place) const { return items_.empty() ? place : items_[place]; }
 
     // Finds the lists of `count` points and asks for the blocks in them.
     template <typename PointAt, std::size_t Some>
@@ -160,7 +170,7 @@ private:
                 std::uint32_t numbers[lanes];
                 std::uint32_t some = 0;
                 for (; near != 0; near &= near - 1) { numbers[some++] = at.first + first_lane(near); }
-                simd::run_best<T, ask_blocks>(blocks_.data(), &numbers[0], some, question, found);
+                ask(&numbers[0], some, question, found);
             } else {
                 for (; near != 0; near &= near - 1) { waiting[count++] = at.first + first_lane(near); }
             }
@@ -224,9 +234,8 @@ private:
     // Whether a sphere of `b` reaches into `cell`.
     [[nodiscard]] static bool meets(const block& b, const bounds<T>& cell) {
         for (unsigned i = 0; i < lanes; ++i) {
-            const vec3<T> centre{b.x[i], b.y[i], b.z[i]};
-            const vec3<T> nearest = glm::min(glm::max(centre, cell.low), cell.high);
-            if (distance2(centre, nearest) <= b.limit2[i] * search_margin<T>) { return true; }
+            const vec3<T> nearest = glm::min(glm::max(b.centre(i), cell.low), cell.high);
+            if (distance2(b.centre(i), nearest) <= b.limit2[i] * search_margin<T>) { return true; }
         }
         return false;
     }
@@ -236,12 +245,16 @@ private:
         block& made = blocks_.emplace_back();
         bounds<T> box;
         for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-            made.set(i, spheres[i]);
+            made.set(i, spheres[i].centre, spheres[i].limit2);
+            items_.push_back(spheres[i].item);
             const T reach = spheres[i].radius() * search_margin<T>;
             box.add(spheres[i].centre - reach);
             box.add(spheres[i].centre + reach);
         }
-        for (auto i = static_cast<std::uint32_t>(spheres.size()); i < lanes; ++i) { made.clear(i); }
+        for (auto i = static_cast<std::uint32_t>(spheres.size()); i < lanes; ++i) {
+            made.clear(i);
+            items_.push_back(none);
+        }
         return box;
     }
 
@@ -278,6 +291,7 @@ private:
 
     std::size_t size_ = 0;
     std::vector<block> blocks_{};
+    std::vector<std::uint32_t> items_{};  // by place; empty if places are all there is to find
     std::vector<node> nodes_{};
     std::vector<std::uint32_t> roots_{};
     cell_directory<T> directory_{};

@@ -43,25 +43,35 @@ template <typename T>
 
 /// `Lanes` spheres by coordinate, as vector instructions like them. An unused lane has a `limit2` of 0.
 template <typename T, unsigned Lanes>
-struct sphere_block {
+struct sphere_lanes {
     T x[Lanes];
     T y[Lanes];
     T z[Lanes];
     T limit2[Lanes];
-    std::uint32_t item[Lanes];
 
     /// Makes a lane that answers no question.
-    void clear(std::uint32_t lane) { set(lane, {vec3<T>{std::numeric_limits<T>::infinity()}, T(0), 0}); }
+    void clear(std::uint32_t lane) { set(lane, vec3<T>{std::numeric_limits<T>::infinity()}, T(0)); }
+
+    void set(std::uint32_t lane, const vec3<T>& centre, T limit) {
+        x[lane] = centre.x;
+        y[lane] = centre.y;
+        z[lane] = centre.z;
+        limit2[lane] = limit;
+    }
+    [[nodiscard]] vec3<T> centre(std::uint32_t lane) const { return {x[lane], y[lane], z[lane]}; }
+};
+
+/// The same, and whose spheres they are.
+template <typename T, unsigned Lanes>
+struct sphere_block : sphere_lanes<T, Lanes> {
+    std::uint32_t item[Lanes];
 
     void set(std::uint32_t lane, const stored_sphere<T>& sphere) {
-        x[lane] = sphere.centre.x;
-        y[lane] = sphere.centre.y;
-        z[lane] = sphere.centre.z;
-        limit2[lane] = sphere.limit2;
+        sphere_lanes<T, Lanes>::set(lane, sphere.centre, sphere.limit2);
         item[lane] = sphere.item;
     }
     [[nodiscard]] stored_sphere<T> at(std::uint32_t lane) const {
-        return {{x[lane], y[lane], z[lane]}, limit2[lane], item[lane]};
+        return {this->centre(lane), this->limit2[lane], item[lane]};
     }
 };
 
@@ -91,10 +101,10 @@ public:
         std::uint32_t* item;
         T* distance2;
 
-        /// Appends the lanes in `mask`. Expects room for them.
+        /// Appends `first + lane` for the lanes in `mask`. Expects room for them.
         template <typename Pack>
-        [[gnu::always_inline]] void append(const std::uint32_t* items, const Pack& distances2, std::uint32_t mask) {
-            Pack::compress(item, items, mask);
+        [[gnu::always_inline]] void append(std::uint32_t first, const Pack& distances2, std::uint32_t mask) {
+            Pack::compress_numbers(item, first, mask);
             item += std::popcount(mask);
             if constexpr (WithDistances) {
                 Pack::compress(distance2, distances2, mask);
@@ -115,6 +125,13 @@ public:
         count_ = kept;
     }
 
+    /// Calls the finds from number `first` on `name(item)` instead.
+    template <typename Name>
+    void rename(std::size_t first, const Name& name) {
+        for (std::size_t i = first; i < count_; ++i) { items_[i] = name(items_[i]); }
+    }
+
+    [[nodiscard]] std::size_t size() const { return count_; }
     /// What was found, in the order of finding.
     [[nodiscard]] std::span<const std::uint32_t> items() const { return {items_, count_}; }
 
@@ -220,7 +237,8 @@ struct within_question {
     }
 };
 
-/// Adds the answers in blocks of sixteen, `blocks[numbers[i]]` for i below `count`, to `found`.
+/// Adds the answers in blocks of sixteen, `blocks[numbers[i]]` for i below `count`, to `found`, by place: sixteen times
+/// the number of the block, and the lane.
 struct ask_blocks {
     template <typename Pack, typename Block, typename Question, typename T, bool D>
     [[gnu::always_inline]] static void run(const Block* blocks, const std::uint32_t* numbers, std::uint32_t count,
@@ -231,10 +249,11 @@ struct ask_blocks {
         found.reserve(count * simd::lanes);
         auto end = found.end();
         for (std::uint32_t i = 0; i < count; ++i) {
-            const sphere_block<T, simd::lanes>& block = blocks[numbers[i]];
+            const sphere_lanes<T, simd::lanes>& block = blocks[numbers[i]];
             const Pack distances2 = Pack::length2(Pack::sub(Pack::load(block.x), x), Pack::sub(Pack::load(block.y), y),
                                                   Pack::sub(Pack::load(block.z), z));
-            end.append(block.item, distances2, Pack::less(distances2, asked.limits2(Pack::load(block.limit2))));
+            end.append(numbers[i] * simd::lanes, distances2,
+                       Pack::less(distances2, asked.limits2(Pack::load(block.limit2))));
         }
         found.end_at(end);
     }

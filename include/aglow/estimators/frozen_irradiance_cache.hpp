@@ -51,12 +51,17 @@ public:
             spheres.push_back({i.record.position(), limit2_of(i.record.longest_radius()), number});
         }
         reaches_ = packed_spheres<T>{std::move(spheres)};
-        items_.reserve(items.size());
+        const std::vector<std::uint32_t> numbers = reaches_.hand_out_items();
+        records_.resize(numbers.size());
+        bends_.resize(numbers.size());
         places_.resize(items.size());
-        reaches_.renumber([&](std::uint32_t i) {
-            items_.push_back(items[i]);
-            return places_[i] = size() - 1;
-        });
+        for (std::uint32_t place = 0; place < numbers.size(); ++place) {
+            if (numbers[place] == packed_spheres<T>::none) { continue; }
+            const item& one = items[numbers[place]];
+            records_[place].record = one.record;
+            bends_[place] = one.bend;
+            places_[numbers[place]] = place;
+        }
     }
 
     /// Irradiance at `point` on the side of `normal` (unit); false where no record is acceptable. `counters` hears what
@@ -85,48 +90,61 @@ public:
         light_blend<S, T> blend{point, normal, limits_};
         sphere_hits<T> near;
         reaches_.search(covering_question<T>{point}, near);
-        for (const std::uint32_t number : near.items()) { blend.add(items_[number]); }
+        for (const std::uint32_t place : near.items()) { blend.add(at(place)); }
         return blend.answer();
     }
 
     /// What the record says that fits best, however badly: for the odd point between all reaches. Asks every record, so
     /// takes as long as a few gather rays. False only where no record faces the same half space.
     [[nodiscard]] irradiance_answer<S, T> nearest(const vec3<T>& point, const vec3<T>& normal) const {
-        const item* best = nullptr;
+        std::uint32_t best = packed_spheres<T>::none;
         T least = std::numeric_limits<T>::infinity();
-        for (const item& i : items_) {
-            const frame<T> axes = i.record.axes();
+        for (const std::uint32_t place : places_) {
+            const record& r = records_[place].record;
+            const frame<T> axes = r.axes();
             const T turn = length2(normal - axes.z) / 2;
-            const T misfit = i.record.distance2(i.record.local(point, axes)) + turn / limits_.turn;
+            const T misfit = r.distance2(r.local(point, axes)) + turn / limits_.turn;
             if (turn < 1 && misfit < least) {
                 least = misfit;
-                best = &i;
+                best = place;
             }
         }
-        if (!best) { return {}; }
-        const T error = static_cast<T>(max_component(best->record.irradiance())) * std::min(T(1), least * best->bend);
-        return {best->record.irradiance(), error, limits_.weight, 1};
+        if (best == packed_spheres<T>::none) { return {}; }
+        const S& irradiance = records_[best].record.irradiance();
+        const T error = static_cast<T>(max_component(irradiance)) * std::min(T(1), least * bends_[best]);
+        return {irradiance, error, limits_.weight, 1};
     }
 
-    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(items_.size()); }
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }
     /// The record of number `index`, which is where it was in the items. Expects `index < size()`.
-    [[nodiscard]] const record& operator[](std::uint32_t index) const { return items_[places_[index]].record; }
+    [[nodiscard]] const record& operator[](std::uint32_t index) const { return records_[places_[index]].record; }
     [[nodiscard]] const irradiance_cache_options& options() const { return options_; }
 
     /// Bytes taken from the heap.
     [[nodiscard]] std::size_t bytes() const {
-        return items_.capacity() * sizeof(item) + places_.capacity() * sizeof(std::uint32_t) + reaches_.bytes();
+        return records_.capacity() * sizeof(kept) + bends_.capacity() * sizeof(T) +
+               places_.capacity() * sizeof(std::uint32_t) + reaches_.bytes();
     }
 
 private:
     static constexpr std::size_t in_step = 16;
 
+    // As few lines of memory to a record as there can be.
+    struct alignas(sizeof(record) % 64 == 0 ? 64 : alignof(record)) kept {
+        irradiance_record<S, T, Features> record;
+    };
+    struct near_record {
+        const irradiance_record<S, T, Features>& record;
+        T bend;
+    };
+    [[nodiscard]] near_record at(std::uint32_t place) const { return {records_[place].record, bends_[place]}; }
+
     template <typename Counters>
     [[nodiscard]] irradiance_answer<S, T> blend(const vec3<T>& point, const vec3<T>& normal,
-                                                std::span<const std::uint32_t> numbers, Counters& counters) const {
+                                                std::span<const std::uint32_t> places, Counters& counters) const {
         record_blend<S, T> blend{point, normal, limits_};
         blend.add(
-            numbers.size(), [&](std::size_t i) -> const item& { return items_[numbers[i]]; },
+            places.size(), [&](std::size_t i) { return at(places[i]); },
             [&](detail::verdict v) { detail::count(counters, v); });
         const irradiance_answer<S, T> answer = blend.answer();
         detail::count_lookup(counters, static_cast<bool>(answer));
@@ -147,8 +165,8 @@ private:
                 if (counts[i] > room) { answers[i] = blend(places[i].position, places[i].normal, numbers, nothing); }
                 for (std::size_t k = 0; k < std::min(room, counts[i]); ++k) {
                     found[i][k] = numbers[k];
-                    simd::prefetch(&items_[numbers[k]]);
-                    simd::prefetch(&items_[numbers[k]].bend);
+                    simd::prefetch(&records_[numbers[k]]);
+                    simd::prefetch(&bends_[numbers[k]]);
                 }
             });
         for (std::size_t i = 0; i < places.size(); ++i) {
@@ -157,7 +175,8 @@ private:
         }
     }
 
-    std::vector<item> items_;
+    std::vector<kept> records_;          // by place
+    std::vector<T> bends_;               // likewise
     std::vector<std::uint32_t> places_;  // of the items, by number
     irradiance_cache_options options_;
     detail::lookup_limits<T> limits_;
