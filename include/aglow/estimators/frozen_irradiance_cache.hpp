@@ -75,8 +75,8 @@ public:
     }
 
     /// Looks up every place, which has a `position` and a unit `normal`: `answers[i]` becomes what `lookup` says of
-    /// `places[i]`, to the bit. Asks for memory ahead: places in no order are answered up to twice as fast of a hundred
-    /// thousand records and more; smaller caches are near anyway. Expects as many answers as places.
+    /// `places[i]`, to the bit. Asks for memory ahead: places in no order are answered two to three times as fast of a
+    /// hundred thousand records and more; smaller caches are near anyway. Expects as many answers as places.
     template <typename Place>
     void lookup_each(std::span<const Place> places, std::span<irradiance_answer<S, T>> answers) const {
         for (std::size_t first = 0; first < places.size(); first += in_step) {
