@@ -139,6 +139,13 @@ void add_questions(CLI::App& app, render_options& o, std::string& show, std::str
     app.add_flag("--error", o.error, "audit the picture: error bars as a layer, and as a heat map beside it")
         ->group(group);
     app.add_option(
+           "--error-samples", o.error_samples,
+           "most samples of that audit, to which rare kinds of pixels add about as many: few make bars and bounds "
+           "wider, never wrong [as many as the probes' noise calls for]")
+        ->type_name("N")
+        ->check(whole(10'000, 4'000'000'000))
+        ->group(group);
+    app.add_option(
            "--until", until,
            "render on until an audit certifies this mean relative error, such as 5%; photons, gather rays and accuracy "
            "follow it where they are not given")
@@ -187,6 +194,7 @@ std::vector<std::string> unused(const CLI::App& app, const render_options& o) {
     look("--gather-rays", !o.reference && (caches || o.how == method::final_gather), by + " does not gather");
     look("--accuracy", !o.reference && caches, by + " has no irradiance cache");
     look("--spp", o.until == 0 && o.seconds == 0, o.until > 0 ? "--until decides" : "--time decides");
+    look("--error-samples", o.error, "--error is not asked for");
     look("--layers", o.show == view::beauty, "--view shows one of them alone");
     return notes;
 }

@@ -36,6 +36,8 @@ struct render_options {
     std::optional<double> accuracy{};
     bool layers{false};
     bool error{false};
+    /// Most samples of that audit, those for classes of pixels apart.
+    std::optional<std::size_t> error_samples{};
     /// The mean relative error that an audit shall certify; 0 for as many samples as told.
     double until{0};
     /// Path tracing in two independent halves, in one file of half floats.

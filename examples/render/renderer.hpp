@@ -337,8 +337,9 @@ private:
         const audited_film numbers{film, features(),
                                    aglow::caustic_light(scene_, lights_, eye(), options_.width, options_.height,
                                                         {.seed = options_.seed}, run_)};
-        const aglow::audit_options o{
+        aglow::audit_options o{
             .target = options_.until > 0 ? options_.until : 0.05, .seed = options_.seed, .stream = 1};
+        o.budget = options_.error_samples.value_or(o.budget);
         const aglow::audit_result stated =
             with_probe([&](const auto& probe) { return aglow::audit(numbers.view(), probe, o, run_); });
         result_.phases.push_back({"audit", since(begun)});

@@ -87,6 +87,8 @@ TEST_CASE("options: what changes nothing is said, and nothing else") {
           "--indirect-photons ");
     CHECK(said({"furnace", "--time", "1", "--spp", "4"}) == "--spp ");
     CHECK(said({"furnace", "--until", "5%", "--spp", "4"}) == "--spp ");
+    CHECK(said({"furnace", "--error-samples", "20000"}) == "--error-samples ");
+    CHECK(said({"furnace", "--error", "--error-samples", "20000"}).empty());
     CHECK(said({"furnace", "--view", "direct", "--layers"}) == "--layers ");
     CHECK(said({"furnace", "--reference", "--spp", "4", "--accuracy", "1"}) == "--accuracy ");
 }
@@ -96,6 +98,7 @@ TEST_CASE("options: every wrong wish is one line that names it") {
         {complaint({"furnace", "--method", "magic"}), "magic"},
         {complaint({"furnace", "--view", "inside"}), "inside"},
         {complaint({"furnace", "--spp", "0"}), "--spp"},
+        {complaint({"furnace", "--error", "--error-samples", "9"}), "--error-samples"},
         {complaint({"furnace", "--spp", "-4"}), "--spp"},
         {complaint({"furnace", "--spp", "many"}), "--spp"},
         {complaint({"furnace", "--time", "nan"}), "--time"},
