@@ -330,6 +330,27 @@ TEST_CASE("audit: a budget is kept, and costs sharpness only") {
     CHECK(poor.mean_error_bound > rich.mean_error_bound);
 }
 
+TEST_CASE("audit: noise beyond what was planned is not taken for the picture's error") {
+    const field f{damage::none};
+    // One sample in 400 is 200 times as bright, and the budget meets few of them.
+    const auto spikes = [&](std::size_t pixel, std::uint64_t seed) {
+        random_sampler<double> random{seed};
+        return f.truth[pixel] * (random.next_1d() < 0.0025 ? 200.5 : 0.5);
+    };
+    constexpr int rounds = 50;
+    int held = 0;
+    for (std::uint64_t r = 0; r < rounds; ++r) {
+        const audit_result plain = audit(f.image(), f.probe(), {.target = 0.02, .budget = 20'000, .seed = r});
+        CHECK(plain.mean_error > 0.02);
+        held += plain.mean_error_floor <= 0.02 ? 1 : 0;
+        const audit_result rare = audit(f.image(), spikes, {.target = 0.02, .budget = 200'000, .seed = r});
+        CHECK(rare.mean_error > 0.5);
+        CHECK(rare.mean_error_floor == 0);
+        CHECK(rare.status == audit_status::inconclusive);
+    }
+    CHECK(held >= rounds * synthetic::least_coverage(rounds));
+}
+
 TEST_CASE("audit: wrong settings are refused by name") {
     const field f{damage::none};
     CHECK(synthetic::refuses("target", [&] { (void)audit(f.image(), f.probe(), {.target = 0}); }));
