@@ -29,6 +29,13 @@ inline void prefetch([[maybe_unused]] const void* address) {
 #endif
 }
 
+/// Keeps the call of a function that does nothing but prefetch: g++ takes it for one without any effect.
+inline void keep_call() {
+#if defined(__GNUC__)
+    asm volatile("");
+#endif
+}
+
 /// `x`, rounded to a `T` and hidden from the optimiser, which else may fuse a product with the sum it goes into or
 /// reorder sums (-ffp-contract, -ffast-math): what stands in a `rounded` has the same bits under every flag.
 template <typename T>
