@@ -19,10 +19,12 @@
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/plan.hpp>
+#include <aglow/core/random.hpp>
 #include <aglow/report/render_until.hpp>
 #include <aglow/report/statement.hpp>
 
 #include "common/camera.hpp"
+#include "common/counted_scene.hpp"
 #include "common/drawing.hpp"
 #include "common/light_set.hpp"
 #include "common/progress.hpp"
@@ -209,7 +211,8 @@ private:
             case view::beauty: break;
         }
         end_ = end_of_picture(maps);
-        const picture all = options_.until > 0 ? until(integrator) : expose("picture", integrator, true);
+        const picture all =
+            options_.until > 0 ? until(integrator, lookups_a_sample(maps, cache)) : expose("picture", integrator, true);
         result_.layers.insert(result_.layers.begin(), {"", all});
         if (!options_.layers) { return; }
         show("direct", direct());
@@ -293,9 +296,30 @@ private:
         });
     }
 
-    /// Adds samples until an audit certifies the error that was asked for, or it is clear that none will.
+    /// Rays of a sample, by a few; what a clock tells would not be the same again.
     template <typename Integrator>
-    picture until(const Integrator& integrator) {
+    [[nodiscard]] double rays_a_sample(const Integrator& integrator) const {
+        constexpr std::size_t pixels = 1024;
+        const auto through = eye();
+        const aglow::pixel_probe look{through, integrator, options_.width};
+        const auto rays = [] { return ray_count::here().nearest + ray_count::here().shadow; };
+        const std::uint64_t before = rays();
+        for (std::size_t i = 0; i < pixels; ++i) {
+            (void)look(aglow::mix(options_.seed, i) % (options_.width * options_.height), options_.seed, 1);
+        }
+        return static_cast<double>(rays() - before) / pixels;
+    }
+
+    /// What the lookups of a sample cost, in rays: about one in a cache, eight in a map of photons.
+    [[nodiscard]] double lookups_a_sample(const maps_type* maps, const cache_type* cache) const {
+        const bool caustics = maps && maps->caustic.size() > 0;
+        return (cache ? 1 : 0) + (caustics ? 8 : 0) + (options_.how == method::photon_map ? 8 : 0);
+    }
+
+    /// Adds samples until an audit certifies the error that was asked for, or it is clear that none will. `lookups` as
+    /// by `lookups_a_sample`.
+    template <typename Integrator>
+    picture until(const Integrator& integrator, double lookups) {
         const auto begun = clock::now();
         aglow::film<S> film{options_.width, options_.height};
         std::optional<audited_film> numbers;
@@ -308,8 +332,10 @@ private:
         o.audit = {.target = options_.until, .seed = options_.seed};
         o.first_work = 4;
         o.most_work = 1 << 16;
-        // A path takes about twice as long as a sample that ends in maps and caches.
-        o.probe_work = (options_.how == method::path ? 1 : 2) / static_cast<double>(options_.width * options_.height);
+        const aglow::path_tracer<World, light_set<T>> tracer{scene_, lights_};
+        o.probe_work =
+            (options_.how == method::path ? 1 : rays_a_sample(tracer) / (rays_a_sample(integrator) + lookups)) /
+            static_cast<double>(options_.width * options_.height);
         o.progress = [this](const aglow::until_progress& p) {
             std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
             return !budget_.is_over();

@@ -71,27 +71,21 @@ namespace detail {
     return all;
 }
 
-/// How often each pixel is drawn: a part uniformly, the rest in proportion to the error that is feared there, by the
-/// guess and by how far the pixel stands out. Half of the guess is taken relative to the light, for the mean relative
-/// error, and half as it is, for the energy: else a few pixels at the rim of a lamp, met in one audit of ten, would
-/// decide on it. Weights make all of it one unbiased sample (Veach & Guibas 1995, balance heuristic).
+/// How often each pixel is drawn: a part uniformly, the rest in proportion to the relative error that is feared there,
+/// by how far the pixel stands out, by the contrast around it and by the guess, which is scaled to the target on
+/// average. Weights make all of it one unbiased sample (Veach & Guibas 1995, balance heuristic).
 class pixel_shares {
 public:
     template <std::floating_point T>
     pixel_shares(const audited_picture<T>& picture, double floor, double target)
         : uniform_part_{picture.guess.empty() ? 0.75 : 0.5} {
         const std::vector<double> outliers = standing_out(picture.image, floor);
-        std::vector<double> absolute = widened_guesses(picture, floor);
-        std::vector<double> relative(absolute.size());
-        for (std::size_t i = 0; i < relative.size(); ++i) {
-            relative[i] =
-                std::max(0.0, usable_guess(picture, i, floor)) / (std::max(picture.image.gray(i), 0.0) + floor);
-        }
-        const double level = target / 2 / mean_or_one(absolute);
-        const double relative_level = target / 2 / mean_or_one(relative);
+        const std::vector<double> contrasts = contrast_around(picture.image, floor);
+        std::vector<double> guesses = feared_guesses(picture, floor);
+        const double level = target / mean_or_one(guesses);
         double sum = 0;
         for (std::size_t i = 0; i < outliers.size(); ++i) {
-            sums_.push_back(sum += outliers[i] + relative_level * relative[i] + level * absolute[i]);
+            sums_.push_back(sum += outliers[i] + contrasts[i] / 100 + level * guesses[i]);
         }
     }
 
@@ -111,23 +105,38 @@ public:
     [[nodiscard]] double uniform_part() const { return uniform_part_; }
 
 private:
-    /// The largest guess of each pixel and those around it, and a thirtieth of their contrast: where all samples of a
-    /// pixel missed the rim of a lamp, only its neighbours know.
+    /// The guess of each pixel relative to its light, and the largest of it and those around it: where all samples of a
+    /// pixel missed the rim of a lamp, only its neighbours know. A guess of 0 is believed here, as half of the pixels
+    /// are drawn whatever was guessed.
     template <std::floating_point T>
-    static std::vector<double> widened_guesses(const audited_picture<T>& picture, double floor) {
+    static std::vector<double> feared_guesses(const audited_picture<T>& picture, double floor) {
         std::vector<double> guess(picture.image.pixels());
-        std::vector<double> light = guess;
-        std::vector<double> shade = guess;
         for (std::size_t i = 0; i < guess.size(); ++i) {
-            guess[i] = std::max(0.0, usable_guess(picture, i, floor));
-            light[i] = picture.image.gray(i);
+            const bool none = !picture.guess.empty() && picture.guess[i] == 0;
+            const double own = none ? 0 : usable_guess(picture, i, floor);
+            guess[i] = own / (std::max(picture.image.gray(i), 0.0) + floor);
+        }
+        const std::vector<double> around = largest_around(guess, picture.image.width);
+        for (std::size_t i = 0; i < guess.size(); ++i) { guess[i] += around[i]; }
+        return guess;
+    }
+
+    /// How far apart the lightest and the darkest pixel lie among each one and those around it, relative to its light
+    /// and at most tenfold: what a rim may hide.
+    template <std::floating_point T>
+    static std::vector<double> contrast_around(const image_view<T>& image, double floor) {
+        std::vector<double> light(image.pixels());
+        std::vector<double> shade(image.pixels());
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            light[i] = image.gray(i);
             shade[i] = -light[i];
         }
-        std::vector<double> all = largest_around(guess, picture.image.width);
-        light = largest_around(light, picture.image.width);
-        shade = largest_around(shade, picture.image.width);
-        for (std::size_t i = 0; i < all.size(); ++i) { all[i] += (light[i] + shade[i]) / 30; }
-        return all;
+        light = largest_around(light, image.width);
+        shade = largest_around(shade, image.width);
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            light[i] = std::min(10.0, (light[i] + shade[i]) / (std::max(image.gray(i), 0.0) + floor));
+        }
+        return light;
     }
 
     /// The mean of `values`; 1 where it is of no use, and then all pixels are drawn alike.

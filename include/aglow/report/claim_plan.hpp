@@ -11,6 +11,7 @@
 
 #include <aglow/core/numbers.hpp>
 #include <aglow/report/decay.hpp>
+#include <aglow/report/distributions.hpp>
 
 namespace aglow {
 
@@ -34,7 +35,7 @@ struct claim_outlook {
     double samples{1};  ///< that each took then
     double sample_work{0};
     std::size_t most_probes{2000};
-    double most_noise{1.4};
+    double most_noise{0.7};  ///< above, what probes add to the errors is as uncertain as these
     double least_noise{0.35};
 };
 
@@ -47,20 +48,35 @@ struct claim_outlook {
     return seen - own * own / (4 * seen);
 }
 
-/// The claim that costs least, picture and probes together; its work is infinite where no claim would hold.
+/// What a claim costs in the mean, picture and probes together: where it fails, the picture is rendered on and claimed
+/// again.
+[[nodiscard]] inline double expected_cost(const claim_outlook& known, const claim_plan& plan) {
+    const double count = static_cast<double>(plan.probes);
+    const double probes = known.sample_work * known.samples * square(known.noise / plan.noise) * count;
+    const double goal = certifiable_error(known, plan.probes, plan.noise);
+    const double spread = std::sqrt(square(known.doubt) + square(1.1 * known.ratio) / count);
+    const double holds = normal_cdf(std::log(goal / known.decay.at(plan.work)) / spread);
+    const double again = std::clamp(known.decay.work_to(goal / (1 + spread)), 1.2 * plan.work, 4 * plan.work);
+    return plan.work + probes + (1 - holds) * (again - plan.work + probes);
+}
+
+/// The claim that costs least in the mean; its work is infinite where none would hold.
 [[nodiscard]] inline claim_plan cheapest_claim(const claim_outlook& known) {
     claim_plan best{.noise = known.least_noise};
     double least = std::numeric_limits<double>::infinity();
     for (double noise = known.least_noise; noise <= 1.01 * known.most_noise; noise *= 1.1892) {  // 2^(1/4)
-        const double samples = known.samples * square(known.noise / noise);
         for (std::size_t probes = 200; probes <= known.most_probes; probes += (probes + 3) / 4) {
-            const double goal = certifiable_error(known, probes, noise) / (1 + known.doubt);
+            const double goal = certifiable_error(known, probes, noise);
             if (!(goal > 0)) { continue; }
-            const double work = std::max(known.work, known.decay.work_to(goal));
-            const double cost = work + known.sample_work * samples * static_cast<double>(probes);
-            if (cost < least) {
-                least = cost;
-                best = {work, probes, noise};
+            for (const double caution : {0.0, 0.5, 1.0, 1.5}) {
+                const double work = known.decay.work_to(goal / (1 + caution * known.doubt));
+                if (!is_finite(work)) { break; }
+                const claim_plan plan{std::max(known.work, work), probes, noise};
+                const double cost = expected_cost(known, plan);
+                if (cost < least) {
+                    least = cost;
+                    best = plan;
+                }
             }
         }
     }

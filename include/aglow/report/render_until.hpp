@@ -47,15 +47,15 @@ struct render_until_options {
     double least_growth = 1.15;
     double most_growth = 2;
     /// Standard errors of probes as shares of the target, instead of `audit.noise`: scouts begin with the largest, and
-    /// claims take what is cheapest between both.
+    /// claims take what is cheapest between the smallest and half of the largest.
     double most_noise = 1.4;
     double least_noise = 0.35;
     /// Probes of a scout, and most probes of a claim.
     std::size_t scout_probes = 100;
     std::size_t most_probes = 2000;
     /// Work of one probe sample in the unit above; 0 where unknown, and then they are taken to cost nothing. A claim is
-    /// made where picture and probes together are cheapest; a scout sharper than the one before takes at most a
-    /// twentieth of the work so far, or half of it where noise seems heavy-tailed.
+    /// made where picture and probes together are cheapest in the mean; a scout sharper than the one before takes at
+    /// most a tenth of the work so far, or half of it where noise seems heavy-tailed.
     double probe_work = 0;
     /// Called after every look; returning false ends the work.
     callback<const until_progress&> progress{};
@@ -108,7 +108,7 @@ public:
             const double next_cost = 4 * samples_per_probe_ * static_cast<double>(seen.probes) * options_.probe_work;
             const bool clear = seen.error_deviation < enough * seen.error && !slow_;
             // Where noise falls slowly, a picture that goes on does not make it clearer: sharper probes do.
-            const double most_cost = (slow_ ? 0.5 : 0.05) * work;
+            const double most_cost = (slow_ ? 0.5 : 0.1) * work;
             if (clear || noise_ <= options_.least_noise || next_cost > most_cost) { break; }
         }
         return add(seen);
@@ -127,7 +127,7 @@ public:
                                .samples = samples_per_probe_,
                                .sample_work = options_.probe_work,
                                .most_probes = options_.most_probes,
-                               .most_noise = options_.most_noise,
+                               .most_noise = std::max(options_.least_noise, options_.most_noise / 2),
                                .least_noise = options_.least_noise});
     }
 
