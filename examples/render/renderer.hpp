@@ -350,8 +350,13 @@ private:
         }
         if (reached.status == aglow::until_status::cancelled) {
             result_.notes.push_back("the time was over before the error could be certified");
-        } else {
+        } else if (reached.claims > 0 || reached.status == aglow::until_status::broken) {
             note(reached.certificate);
+        } else if (!reached.checks.empty()) {
+            char text[80];
+            std::snprintf(text, sizeof text, "not certified: the mean relative error is about %.3g %%",
+                          100 * reached.checks.back().error);
+            result_.notes.push_back(text);
         }
         if (options_.error) { audit(film); }
         return taken_from(film, true);
