@@ -73,20 +73,24 @@ namespace detail {
 
 /// How often each pixel is drawn: a part uniformly, the rest in proportion to the relative error that is feared there,
 /// by how far the pixel stands out, by the contrast around it and by the guess, which is scaled to the target on
-/// average. Weights make all of it one unbiased sample (Veach & Guibas 1995, balance heuristic).
+/// average. Where the energy is judged too, half of the guess and the contrast counts as it is, in the dark as in
+/// light. Weights make all of it one unbiased sample (Veach & Guibas 1995, balance heuristic).
 class pixel_shares {
 public:
     template <std::floating_point T>
-    pixel_shares(const audited_picture<T>& picture, double floor, double target)
+    pixel_shares(const audited_picture<T>& picture, double floor, const audit_options& options)
         : uniform_part_{picture.guess.empty() ? 0.75 : 0.5} {
         const std::vector<double> outliers = standing_out(picture.image, floor);
-        const std::vector<double> contrasts = contrast_around(picture.image, floor);
-        std::vector<double> guesses = feared_guesses(picture, floor);
-        const double level = target / mean_or_one(guesses);
-        double sum = 0;
-        for (std::size_t i = 0; i < outliers.size(); ++i) {
-            sums_.push_back(sum += outliers[i] + contrasts[i] / 100 + level * guesses[i]);
+        const auto light = [&](std::size_t i) { return std::max(picture.image.gray(i), 0.0) + floor; };
+        std::vector<double> feared = feared_errors(picture, floor, options.target, light);
+        if (options.bias_target) {
+            const double mean = std::abs(mean_value(picture.image)) + floor;
+            const std::vector<double> absolute =
+                feared_errors(picture, floor, options.target, [mean](std::size_t) { return mean; });
+            for (std::size_t i = 0; i < feared.size(); ++i) { feared[i] = (feared[i] + absolute[i]) / 2; }
         }
+        double sum = 0;
+        for (std::size_t i = 0; i < outliers.size(); ++i) { sums_.push_back(sum += outliers[i] + feared[i]); }
     }
 
     /// The pixel at `place` in [0, 1) of the feared shares laid end to end.
@@ -105,26 +109,37 @@ public:
     [[nodiscard]] double uniform_part() const { return uniform_part_; }
 
 private:
-    /// The guess of each pixel relative to its light, and the largest of it and those around it: where all samples of a
+    /// What the guess says, on average the target, and a hundredth of the contrast; relative to `unit(i)`.
+    template <std::floating_point T, typename Unit>
+    static std::vector<double> feared_errors(const audited_picture<T>& picture, double floor, double target,
+                                             const Unit& unit) {
+        std::vector<double> feared = feared_guesses(picture, floor, unit);
+        const double level = target / mean_or_one(feared);
+        const std::vector<double> contrasts = contrast_around(picture.image);
+        for (std::size_t i = 0; i < feared.size(); ++i) {
+            feared[i] = level * feared[i] + std::min(10.0, contrasts[i] / unit(i)) / 100;
+        }
+        return feared;
+    }
+
+    /// The guess of each pixel relative to `unit`, and the largest of it and those around it: where all samples of a
     /// pixel missed the rim of a lamp, only its neighbours know. A guess of 0 is believed here, as half of the pixels
     /// are drawn whatever was guessed.
-    template <std::floating_point T>
-    static std::vector<double> feared_guesses(const audited_picture<T>& picture, double floor) {
+    template <std::floating_point T, typename Unit>
+    static std::vector<double> feared_guesses(const audited_picture<T>& picture, double floor, const Unit& unit) {
         std::vector<double> guess(picture.image.pixels());
         for (std::size_t i = 0; i < guess.size(); ++i) {
             const bool none = !picture.guess.empty() && picture.guess[i] == 0;
-            const double own = none ? 0 : usable_guess(picture, i, floor);
-            guess[i] = own / (std::max(picture.image.gray(i), 0.0) + floor);
+            guess[i] = none ? 0 : usable_guess(picture, i, floor) / unit(i);
         }
         const std::vector<double> around = largest_around(guess, picture.image.width);
         for (std::size_t i = 0; i < guess.size(); ++i) { guess[i] += around[i]; }
         return guess;
     }
 
-    /// How far apart the lightest and the darkest pixel lie among each one and those around it, relative to its light
-    /// and at most tenfold: what a rim may hide.
+    /// How far apart the lightest and the darkest pixel lie among each one and those around it: what a rim may hide.
     template <std::floating_point T>
-    static std::vector<double> contrast_around(const image_view<T>& image, double floor) {
+    static std::vector<double> contrast_around(const image_view<T>& image) {
         std::vector<double> light(image.pixels());
         std::vector<double> shade(image.pixels());
         for (std::size_t i = 0; i < light.size(); ++i) {
@@ -133,9 +148,7 @@ private:
         }
         light = largest_around(light, image.width);
         shade = largest_around(shade, image.width);
-        for (std::size_t i = 0; i < light.size(); ++i) {
-            light[i] = std::min(10.0, (light[i] + shade[i]) / (std::max(image.gray(i), 0.0) + floor));
-        }
+        for (std::size_t i = 0; i < light.size(); ++i) { light[i] += shade[i]; }
         return light;
     }
 
@@ -164,7 +177,7 @@ struct audit_ground {
         : picture{seen},
           mean{mean_value(seen.image)},
           floor{options.dark * std::abs(mean)},
-          shares{seen, floor, options.target} {}
+          shares{seen, floor, options} {}
 };
 
 }  // namespace detail
