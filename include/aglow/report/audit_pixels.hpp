@@ -71,26 +71,28 @@ namespace detail {
     return all;
 }
 
-/// How often each pixel is drawn: a part uniformly, the rest in proportion to the relative error that is feared there,
-/// by how far the pixel stands out, by the contrast around it and by the guess, which is scaled to the target on
-/// average. Where the energy is judged too, half of the guess and the contrast counts as it is, in the dark as in
-/// light. Weights make all of it one unbiased sample (Veach & Guibas 1995, balance heuristic).
+/// How often each pixel is drawn: a part uniformly, the rest in proportion to the error that is feared there, by the
+/// guess and by how far the pixel stands out. Half of the guess is taken relative to the light, for the mean relative
+/// error, and half as it is, for the energy: else a few pixels at the rim of a lamp, met in one audit of ten, would
+/// decide on it. Weights make all of it one unbiased sample (Veach & Guibas 1995, balance heuristic).
 class pixel_shares {
 public:
     template <std::floating_point T>
-    pixel_shares(const audited_picture<T>& picture, double floor, const audit_options& options)
+    pixel_shares(const audited_picture<T>& picture, double floor, double target)
         : uniform_part_{picture.guess.empty() ? 0.75 : 0.5} {
         const std::vector<double> outliers = standing_out(picture.image, floor);
-        const auto light = [&](std::size_t i) { return std::max(picture.image.gray(i), 0.0) + floor; };
-        std::vector<double> feared = feared_errors(picture, floor, options.target, light);
-        if (options.bias_target) {
-            const double mean = std::abs(mean_value(picture.image)) + floor;
-            const std::vector<double> absolute =
-                feared_errors(picture, floor, options.target, [mean](std::size_t) { return mean; });
-            for (std::size_t i = 0; i < feared.size(); ++i) { feared[i] = (feared[i] + absolute[i]) / 2; }
+        std::vector<double> absolute = widened_guesses(picture, floor);
+        std::vector<double> relative(absolute.size());
+        for (std::size_t i = 0; i < relative.size(); ++i) {
+            relative[i] =
+                std::max(0.0, usable_guess(picture, i, floor)) / (std::max(picture.image.gray(i), 0.0) + floor);
         }
+        const double level = target / 2 / mean_or_one(absolute);
+        const double relative_level = target / 2 / mean_or_one(relative);
         double sum = 0;
-        for (std::size_t i = 0; i < outliers.size(); ++i) { sums_.push_back(sum += outliers[i] + feared[i]); }
+        for (std::size_t i = 0; i < outliers.size(); ++i) {
+            sums_.push_back(sum += outliers[i] + relative_level * relative[i] + level * absolute[i]);
+        }
     }
 
     /// The pixel at `place` in [0, 1) of the feared shares laid end to end.
@@ -109,47 +111,23 @@ public:
     [[nodiscard]] double uniform_part() const { return uniform_part_; }
 
 private:
-    /// What the guess says, on average the target, and a hundredth of the contrast; relative to `unit(i)`.
-    template <std::floating_point T, typename Unit>
-    static std::vector<double> feared_errors(const audited_picture<T>& picture, double floor, double target,
-                                             const Unit& unit) {
-        std::vector<double> feared = feared_guesses(picture, floor, unit);
-        const double level = target / mean_or_one(feared);
-        const std::vector<double> contrasts = contrast_around(picture.image);
-        for (std::size_t i = 0; i < feared.size(); ++i) {
-            feared[i] = level * feared[i] + std::min(10.0, contrasts[i] / unit(i)) / 100;
-        }
-        return feared;
-    }
-
-    /// The guess of each pixel relative to `unit`, and the largest of it and those around it: where all samples of a
-    /// pixel missed the rim of a lamp, only its neighbours know. A guess of 0 is believed here, as half of the pixels
-    /// are drawn whatever was guessed.
-    template <std::floating_point T, typename Unit>
-    static std::vector<double> feared_guesses(const audited_picture<T>& picture, double floor, const Unit& unit) {
-        std::vector<double> guess(picture.image.pixels());
-        for (std::size_t i = 0; i < guess.size(); ++i) {
-            const bool none = !picture.guess.empty() && picture.guess[i] == 0;
-            guess[i] = none ? 0 : usable_guess(picture, i, floor) / unit(i);
-        }
-        const std::vector<double> around = largest_around(guess, picture.image.width);
-        for (std::size_t i = 0; i < guess.size(); ++i) { guess[i] += around[i]; }
-        return guess;
-    }
-
-    /// How far apart the lightest and the darkest pixel lie among each one and those around it: what a rim may hide.
+    /// The largest guess of each pixel and those around it, and a thirtieth of their contrast: where all samples of a
+    /// pixel missed the rim of a lamp, only its neighbours know.
     template <std::floating_point T>
-    static std::vector<double> contrast_around(const image_view<T>& image) {
-        std::vector<double> light(image.pixels());
-        std::vector<double> shade(image.pixels());
-        for (std::size_t i = 0; i < light.size(); ++i) {
-            light[i] = image.gray(i);
+    static std::vector<double> widened_guesses(const audited_picture<T>& picture, double floor) {
+        std::vector<double> guess(picture.image.pixels());
+        std::vector<double> light = guess;
+        std::vector<double> shade = guess;
+        for (std::size_t i = 0; i < guess.size(); ++i) {
+            guess[i] = std::max(0.0, usable_guess(picture, i, floor));
+            light[i] = picture.image.gray(i);
             shade[i] = -light[i];
         }
-        light = largest_around(light, image.width);
-        shade = largest_around(shade, image.width);
-        for (std::size_t i = 0; i < light.size(); ++i) { light[i] += shade[i]; }
-        return light;
+        std::vector<double> all = largest_around(guess, picture.image.width);
+        light = largest_around(light, picture.image.width);
+        shade = largest_around(shade, picture.image.width);
+        for (std::size_t i = 0; i < all.size(); ++i) { all[i] += (light[i] + shade[i]) / 30; }
+        return all;
     }
 
     /// The mean of `values`; 1 where it is of no use, and then all pixels are drawn alike.
@@ -177,7 +155,7 @@ struct audit_ground {
         : picture{seen},
           mean{mean_value(seen.image)},
           floor{options.dark * std::abs(mean)},
-          shares{seen, floor, options} {}
+          shares{seen, floor, options.target} {}
 };
 
 }  // namespace detail
