@@ -47,13 +47,10 @@ struct class_list {
 /// Puts each index of `classes` into the list of its class; classes of fewer than `least` share one list of everything.
 class class_lists {
 public:
-    class_lists(std::span<const std::uint32_t> classes, std::size_t least) {
+    class_lists(std::span<const std::uint32_t> classes, std::size_t least) : least_{least} {
         for (std::size_t i = 0; i < classes.size(); ++i) {
             members_of(own_, classes[i]).push_back(i);
             everything_.push_back(i);
-        }
-        for (const auto& [id, members] : own_) {
-            if (members.size() < least) { merged_.push_back(id); }
         }
     }
 
@@ -61,15 +58,15 @@ public:
     template <typename Visit>
     void for_each(const Visit& visit) const {
         for (const auto& [id, members] : own_) {
-            const bool merged = std::binary_search(merged_.begin(), merged_.end(), id);
+            const bool merged = members.size() < least_;
             visit(id, std::span<const std::size_t>{merged ? everything_ : members}, merged);
         }
     }
 
 private:
+    std::size_t least_;
     std::vector<class_list> own_{};
     std::vector<std::size_t> everything_{};
-    std::vector<std::uint32_t> merged_{};
 };
 
 /// One scale a class (Mondrian conformal prediction); `scores[i]` = |error| / guess of a randomly drawn pixel of class
@@ -89,8 +86,10 @@ private:
 
 /// The scale of class `id`; nothing for a class that is not in the list.
 [[nodiscard]] inline std::optional<double> scale_of(std::span<const class_scale> scales, std::uint32_t id) {
-    const auto found = std::find_if(scales.begin(), scales.end(), [&](const class_scale& s) { return s.id == id; });
-    return found == scales.end() ? std::nullopt : std::optional{found->scale};
+    for (const class_scale& s : scales) {
+        if (s.id == id) { return s.scale; }
+    }
+    return std::nullopt;
 }
 
 }  // namespace aglow

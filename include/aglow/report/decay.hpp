@@ -2,11 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace aglow {
 
@@ -94,8 +94,10 @@ struct decay_candidate {
         fit.amplitude = std::max(0.0, last.error) * std::pow(last.work, fit.exponent);
         return fit;
     }
-    std::vector<detail::decay_candidate> all;
-    for (int step = 0; step <= 34; ++step) { all.push_back(detail::fit_decay_at(points, 0.15 + 0.025 * step)); }
+    std::array<detail::decay_candidate, 35> all;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        all[i] = detail::fit_decay_at(points, 0.15 + 0.025 * static_cast<double>(i));
+    }
     const auto least = [&](decay_fit detail::decay_candidate::*kind) {
         return (*std::min_element(all.begin(), all.end(),
                                   [&](const auto& a, const auto& b) { return (a.*kind).misfit < (b.*kind).misfit; })).*
