@@ -96,6 +96,7 @@
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/energy_ledger.hpp>
 #include <aglow/algorithms/fill_cache.hpp>
+#include <aglow/algorithms/fill_options.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/final_gather.hpp>
 #include <aglow/algorithms/gather.hpp>

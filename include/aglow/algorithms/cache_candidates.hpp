@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <aglow/algorithms/fill_cache.hpp>
+#include <aglow/algorithms/fill_options.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
 #include <aglow/core/callback.hpp>
