@@ -95,7 +95,7 @@ struct no_maps {};
 /// An integrator: direct light by shadow rays, indirect light from an irradiance cache whose gather rays are
 /// path-traced, and caustics from their own photon map where something mirrors and the lights are an `Emitter` too.
 /// Makes all of it for the picture of `eye`. Handed `glossy_caching_options`, it reads glossy lobes from the cache as
-/// well, caustics too. `const`, safe from many threads.
+/// well, caustics too. Keeps references to scene and lights; `const`, safe from many threads.
 template <Scene World, Illuminator Lights, record_features Features = record_features{}>
 class irradiance_caching {
 public:
@@ -186,8 +186,8 @@ struct gather_caching_options {
 };
 
 /// An integrator: direct light by shadow rays, caustics from their map, indirect light gathered from the photon map at
-/// few points and remembered in an irradiance cache. All is made for the picture of `eye`. `const`, safe from many
-/// threads.
+/// few points and remembered in an irradiance cache. All is made for the picture of `eye`. Keeps references to scene
+/// and lights; `const`, safe from many threads.
 template <Scene World, Illuminator Lights>
     requires Emitter<Lights>
 class gather_caching {

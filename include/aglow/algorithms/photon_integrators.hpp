@@ -150,7 +150,7 @@ private:
 };
 
 /// An integrator: direct light by shadow rays, caustics from their map, indirect light by a final gather at every
-/// shading point. Traces its photons when made. `const`, safe from many threads.
+/// shading point. Traces its photons when made. Keeps references to scene and lights; `const`, safe from many threads.
 template <Scene World, Illuminator Lights>
     requires Emitter<Lights>
 class final_gathering {
