@@ -1,7 +1,11 @@
 #include "error_vs_time/summary.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <map>
+#include <span>
+#include <utility>
 
 #include <aglow/report/bootstrap.hpp>
 
