@@ -15,6 +15,7 @@
 #include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
+#include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/pixel_probe.hpp>
@@ -281,11 +282,20 @@ private:
 
     // ---- how wrong --------------------------------------------------------------------------------------------------
 
-    /// Path tracing looks at the pixels again.
+    /// What looks at pixels again: path tracing, guided where there may be mirrors.
+    [[nodiscard]] auto judge() {
+        if constexpr (aglow::any(aglow::static_lobes<World>, aglow::lobe_set::specular)) {
+            if (!guide_) { guide_.emplace(scene_, lights_, aglow::path_guide_options{.seed = options_.seed}, run_); }
+            return aglow::guided_path_tracer<World, light_set<T>>{scene_, lights_, *guide_};
+        } else {
+            return aglow::path_tracer<World, light_set<T>>{scene_, lights_};
+        }
+    }
+
     template <typename Use>
     auto with_probe(const Use& use) {
         const auto through = eye();
-        const aglow::path_tracer<World, light_set<T>> tracer{scene_, lights_};
+        const auto tracer = judge();
         return use(aglow::pixel_probe{through, tracer, options_.width});
     }
 
@@ -332,10 +342,11 @@ private:
         o.audit = {.target = options_.until, .seed = options_.seed};
         o.first_work = 4;
         o.most_work = 1 << 16;
-        const aglow::path_tracer<World, light_set<T>> tracer{scene_, lights_};
-        o.probe_work =
-            (options_.how == method::path ? 1 : rays_a_sample(tracer) / (rays_a_sample(integrator) + lookups)) /
-            static_cast<double>(options_.width * options_.height);
+        const auto tracer = judge();
+        // Where paths are guided, that costs about as much as three rays.
+        const double guided = guide_ && !guide_->empty() ? 3 : 0;
+        o.probe_work = (rays_a_sample(tracer) + guided) / (rays_a_sample(integrator) + lookups) /
+                       static_cast<double>(options_.width * options_.height);
         o.progress = [this](const aglow::until_progress& p) {
             std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
             return !budget_.is_over();
@@ -486,6 +497,7 @@ private:
     time_budget budget_;
     double end_{options_.seconds};  ///< of the picture, in seconds since the job began
     std::uint32_t taken_{0};
+    std::optional<aglow::path_guide<T>> guide_{};
     std::optional<picture> direct_{};
     std::optional<picture> caustic_{};
 };

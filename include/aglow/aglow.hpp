@@ -101,10 +101,12 @@
 #include <aglow/algorithms/final_gather.hpp>
 #include <aglow/algorithms/gather.hpp>
 #include <aglow/algorithms/gloss_layer.hpp>
+#include <aglow/algorithms/guide_lobes.hpp>
 #include <aglow/algorithms/host_faults.hpp>
 #include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>
+#include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/path_walk.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>

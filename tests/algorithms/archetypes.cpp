@@ -8,6 +8,7 @@
 
 #include <aglow/algorithms/cache_integrators.hpp>
 #include <aglow/algorithms/caustic_light.hpp>
+#include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
@@ -54,6 +55,16 @@ TEMPLATE_TEST_CASE("archetypes: path tracing finds the closed form", "", float, 
     const archetypes::illuminator<T> light{intensity<T>()};
     const auto bands = radiance<T>(aglow::path_tracer{scene, light}, 20'000);
     INFO(bands[0].mean() << ", " << bands[1].mean());
+    CHECK(bands[0].agrees(1, 4));
+    CHECK(bands[1].agrees(0.25, 4));
+}
+
+TEMPLATE_TEST_CASE("archetypes: guided paths find the closed form", "", float, double) {
+    using T = TestType;
+    const archetypes::scene<T> scene;
+    const archetypes::lamp<T> light{intensity<T>()};
+    const aglow::path_guide guide{scene, light, aglow::path_guide_options{}, archetypes::executor{}};
+    const auto bands = radiance<T>(aglow::guided_path_tracer{scene, light, guide}, 20'000);
     CHECK(bands[0].agrees(1, 4));
     CHECK(bands[1].agrees(0.25, 4));
 }

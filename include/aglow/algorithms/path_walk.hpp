@@ -37,7 +37,18 @@ enum class emission_rule : std::uint8_t {
 /// The end of no path: every path goes on by itself.
 struct no_terminal {};
 
+/// The guide of no path: every surface chooses by itself where paths go on.
+struct no_guide {
+    template <Surface H, Sampler R>
+    [[nodiscard, gnu::always_inline]] inline auto sample(const H& hit, const vec3<hit_scalar<H>>& wo, R& random,
+                                                         lobe_set lobes) const {
+        return hit.sample(wo, random, lobes);
+    }
+};
+
 namespace detail {
+
+inline constexpr no_guide unguided{};
 
 /// Where a walk stands.
 template <Scene World>
@@ -50,6 +61,7 @@ struct walk_state {
     vec3<T> came_from{};  ///< the last point that looked for lights
     T travelled{0};       ///< since the start or the last diffuse or glossy surface
     T scatter_pdf{0};     ///< density of `path` there; 0 where specular or the eye
+    T boost{1};           ///< by how much a guide lowered the throughput: that is no reason to end the path
     lobe_set last{lobe_set::none};
     bool mirrored{true};    ///< only specular bounces so far
     bool scattered{false};  ///< more than one diffuse or glossy bounce
@@ -102,17 +114,17 @@ template <Spectrum S>
 }
 
 /// Sends the walk on from `hit` by one of `lobes`; false where it ends.
-template <Scene World, Numbers N>
+template <Scene World, Numbers N, typename Guide = no_guide>
 [[nodiscard, gnu::always_inline]] inline bool scatter(walk_state<World>& at, const hit_of<World>& hit,
                                                       const vec3<scalar_of<World>>& wo, scalar_of<World> error,
                                                       const N& numbers, std::uint32_t bounce, lobe_set lobes,
-                                                      const path_options& options) {
+                                                      const path_options& options, const Guide& guide = unguided) {
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
     using B = band_of<S>;
     if (!any(lobes)) { return false; }
     auto scatter_numbers = numbers.at(bounce, purpose::scatter);
-    const auto next = hit.sample(wo, scatter_numbers, lobes & static_lobes<World>);
+    const auto next = guide.sample(hit, wo, scatter_numbers, lobes & static_lobes<World>);
     if (!next) { return false; }
     const vec3<T> wi = next->wi;
     const S carried = at.throughput;
@@ -120,8 +132,11 @@ template <Scene World, Numbers N>
     if (!is_radiance(at.throughput)) { return lose(options, host_fault::weight, carried); }
     if (is_black(at.throughput)) { return false; }
     if (!is_direction(wi)) { return lose(options, host_fault::direction, carried); }
+    constexpr bool guided = requires { next->boost; };
+    if constexpr (guided) { at.boost *= next->boost; }
     if (bounce >= options.roulette_from) {
-        const B q = survival(B(1), max_component(at.throughput), survival_ceiling<B>(bounce));
+        const B carries = max_component(at.throughput) * (guided ? B(at.boost) : B(1));
+        const B q = survival(B(1), carries, survival_ceiling<B>(bounce));
         if (!(numbers.at(bounce, purpose::roulette).next_1d() < q)) { return false; }
         at.throughput = at.throughput * (1 / q);
     }
@@ -160,7 +175,7 @@ struct eye_light {
 
 /// A walk from the eye or from a gather point. It takes for itself what surfaces emit and what comes from beyond the
 /// scene; the rest of a surface's light is for `shade` to add.
-template <Scene World, Illuminator Lights, Numbers N, bool Eye = false>
+template <Scene World, Illuminator Lights, Numbers N, bool Eye = false, typename Guide = no_guide>
 class path_walk {
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
@@ -169,8 +184,14 @@ class path_walk {
 
 public:
     path_walk(const World& scene, const Lights& lights, const N& numbers, emission_rule rule,
-              const path_options& options, const ray<T>& start)
-        : scene_{scene}, lights_{lights}, numbers_{numbers}, rule_{rule}, options_{options}, at_{.path = start} {}
+              const path_options& options, const ray<T>& start, const Guide& guide = unguided)
+        : scene_{scene},
+          lights_{lights},
+          numbers_{numbers},
+          rule_{rule},
+          options_{options},
+          guide_{guide},
+          at_{.path = start} {}
 
     /// Walks to the end. At each surface, `shade(walk, stop)` adds the light that it sends by its smooth lobes, and
     /// returns the lobes to go on by. At the first `splits` surfaces, mirrors all, the walk goes both ways where they
@@ -194,7 +215,7 @@ public:
                 const bool forks = splits > 0 && at_.mirrored && on == lobe_set::specular;
                 if (forks) { return split(*hit, stop, shade, splits - 1); }
             }
-            if (!scatter(at_, *hit, stop.wo, stop.error, numbers_, bounce, on, options_)) { return result_; }
+            if (!scatter(at_, *hit, stop.wo, stop.error, numbers_, bounce, on, options_, guide_)) { return result_; }
         }
     }
 
@@ -230,9 +251,10 @@ private:
     found split(const hit_of<World>& hit, const walk_stop<World>& stop, const Shade& shade, std::uint32_t splits) {
         for (const lobe_set way : {lobe_set::specular_reflection, lobe_set::specular_transmission}) {
             const auto name = static_cast<std::uint64_t>(way);
-            path_walk branch{scene_, lights_, N{numbers_.fork(mix(stop.bounce, name))}, rule_, options_, at_.path};
+            path_walk branch{scene_,   lights_, N{numbers_.fork(mix(stop.bounce, name))}, rule_, options_,
+                             at_.path, guide_};
             branch.at_ = at_;
-            if (!scatter(branch.at_, hit, stop.wo, stop.error, branch.numbers_, stop.bounce, way, options_)) {
+            if (!scatter(branch.at_, hit, stop.wo, stop.error, branch.numbers_, stop.bounce, way, options_, guide_)) {
                 continue;
             }
             const auto light = branch.run(shade, splits, stop.bounce + 1);
@@ -273,6 +295,7 @@ private:
     N numbers_;
     emission_rule rule_;
     const path_options options_;
+    const Guide& guide_;
     walk_state<World> at_;
     found result_{};
 };
@@ -284,13 +307,14 @@ private:
 /// `terminal(hit, wo, travelled, error, mirrored)` may end the walk with an optional `estimate` of the radiance that
 /// the diffuse lobes of `hit` send towards `wo`, direct light included; `travelled` is the way from the last
 /// diffuse or glossy surface, `mirrored` tells that there were only mirrors before. Samples with broken hits or numbers
-/// end where they are, never summed. A walk from the `Eye` tells no normal.
-template <bool Eye = false, Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal>
+/// end where they are, never summed. A walk from the `Eye` tells no normal. `guide` has a say in where paths go on.
+template <bool Eye = false, Scene World, Illuminator Lights, Numbers N, typename Terminal = no_terminal,
+          typename Guide = no_guide>
 [[nodiscard, gnu::always_inline]] inline auto walk_path(const World& scene, const Lights& lights,
                                                         const ray<scalar_of<World>>& start, const N& numbers,
                                                         emission_rule rule = emission_rule::all,
-                                                        const path_options& options = {},
-                                                        const Terminal& terminal = {}) {
+                                                        const path_options& options = {}, const Terminal& terminal = {},
+                                                        const Guide& guide = detail::unguided) {
     const auto shade = [&](auto& walk, const detail::walk_stop<World>& stop) {
         lobe_set lobes = stop.hit.lobes();
         if constexpr (!std::same_as<Terminal, no_terminal>) {
@@ -308,7 +332,8 @@ template <bool Eye = false, Scene World, Illuminator Lights, Numbers N, typename
         }
         return lobes;
     };
-    return detail::path_walk<World, Lights, N, Eye>{scene, lights, numbers, rule, options, start}.run(shade);
+    return detail::path_walk<World, Lights, N, Eye, Guide>{scene, lights, numbers, rule, options, start, guide}.run(
+        shade);
 }
 
 }  // namespace aglow
