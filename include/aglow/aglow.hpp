@@ -22,6 +22,7 @@
 #include <aglow/core/simd_eight.hpp>
 #include <aglow/core/simd_eight_avx2.hpp>
 #include <aglow/core/simd_pair.hpp>
+#include <aglow/core/simd_sixteen.hpp>
 #include <aglow/core/simd_sse.hpp>
 #include <aglow/core/simd_tables.hpp>
 #include <aglow/core/sobol.hpp>
@@ -55,6 +56,7 @@
 #include <aglow/containers/kd_select.hpp>
 #include <aglow/containers/kd_tree.hpp>
 #include <aglow/containers/loose_octree.hpp>
+#include <aglow/containers/near_spheres.hpp>
 #include <aglow/containers/octree.hpp>
 #include <aglow/containers/packed_spheres.hpp>
 #include <aglow/containers/sphere_order.hpp>
@@ -84,6 +86,7 @@
 #include <aglow/estimators/record_blend.hpp>
 #include <aglow/estimators/record_lanes.hpp>
 #include <aglow/estimators/record_neighbours.hpp>
+#include <aglow/estimators/record_pairs.hpp>
 #include <aglow/estimators/record_reach.hpp>
 #include <aglow/estimators/record_sharing.hpp>
 #include <aglow/estimators/record_view.hpp>

@@ -21,7 +21,7 @@ using eight_rows = std::array<std::array<std::int32_t, 9>, 8>;
 
 /// The bits of all that vectors say of two times eight floats and of the words in eight rows.
 struct facts {
-    std::array<eight_words, 24> told;
+    std::array<eight_words, 27> told;
     std::array<float, 5> sums;
     double squares;
     std::uint32_t holds;
@@ -45,6 +45,8 @@ struct tell_facts {
         put_words(bits & words::all(0xffff), all, n), put_words(bits >> 3, all, n), put_words(bits << 3, all, n);
         put_words(words::first_half(bits), all, n), put_words(words::last_half(bits), all, n);
         put_words(words::pick(words::below(5), bits, less), all, n);
+        put(V::picked(y, bits & words::all(7)), all, n);
+        put_words(words::load(rows[2].data()), all, n), put_words(bits - less, all, n);
         words four[4];
         words::columns(start(rows, 0), 12, &four[0]);
         for (const words& w : four) { put_words(w, all, n); }

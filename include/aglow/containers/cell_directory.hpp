@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -75,6 +74,8 @@ private:
     static constexpr std::uint32_t leaf = 0x80000000u;
     // A leaf with more boxes than this is divided, if that helps.
     static constexpr std::size_t enough = 10;
+    // A way down through the bricks is more than a few bytes are worth: its turns are hard to foresee.
+    static constexpr std::size_t starts_per_box = 16;
 
     template <typename Meets>
     class builder;
@@ -216,7 +217,11 @@ cell_directory<T>::cell_directory(const std::vector<bounds<T>>& boxes, const Mee
     starts_.push_back(builder<Meets>{*this, boxes, meets}.fill({0, 0, 0}, depth, std::move(numbers), 0));
     bricks_.shrink_to_fit();
     lists_.shrink_to_fit();
-    while (static_cast<int>(std::bit_width(bricks_.size())) / 3 > start_levels_) { halve_starts(); }
+    const auto is_brick = [](std::uint32_t start) { return start != 0 && (start & leaf) == 0; };
+    while (8 * starts_.size() <= starts_per_box * boxes.size() &&
+           std::any_of(starts_.begin(), starts_.end(), is_brick)) {
+        halve_starts();
+    }
 }
 
 // Says what the bricks say one level further down.

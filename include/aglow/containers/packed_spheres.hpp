@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <aglow/containers/cell_directory.hpp>
+#include <aglow/containers/near_spheres.hpp>
 #include <aglow/containers/sphere_order.hpp>
 #include <aglow/containers/sphere_search.hpp>
 #include <aglow/core/bounds.hpp>
@@ -53,21 +54,19 @@ public:
     }
 
     /// Calls `found(i, items)` with the spheres that cover `point_at(i)`, for i below `count`, in order. Goes on with
-    /// several points in step and asks for memory ahead, which pays where the index does not fit into the caches.
+    /// several points in step and asks for memory ahead, which pays where the index does not fit into the caches; and
+    /// looks through the index once for points in a row that lie together.
     template <typename PointAt, typename Found>
     void search_each(std::size_t count, const PointAt& point_at, Found&& found) const {
-        constexpr std::size_t some = 16;
-        std::array<std::uint32_t, some> lists;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (is_listed() && i % some == 0) { expect(i, std::min(some, count - i), point_at, lists); }
-            sphere_hits<T> hits;
-            const covering_question<T> question{point_at(i)};
-            if (is_listed()) {
-                ask_lists(lists[i % some], question, hits);
-            } else {
-                search_trees(question, hits);
+        std::array<vec3<T>, in_step> points;
+        for (std::size_t first = 0; first < count; first += in_step) {
+            const std::size_t some = std::min(in_step, count - first);
+            for (std::size_t i = 0; i < some; ++i) {
+                const auto& p = point_at(first + i);
+                points[i].x = p.x, points[i].y = p.y, points[i].z = p.z;
             }
-            found(i, hits.items());
+            search_some({points.data(), some},
+                        [&](std::size_t i, std::span<const std::uint32_t> items) { found(first + i, items); });
         }
     }
 
@@ -96,6 +95,9 @@ public:
 
 private:
     static constexpr unsigned lanes = simd::lanes;
+    static constexpr std::size_t in_step = 32;
+    // From so many points of one cell on it pays to look for the spheres near all of them first.
+    static constexpr std::size_t together = 3;
     // Where a cell lists more blocks than this, the trees are faster.
     static constexpr std::size_t crowded = 96;
     using sphere = stored_sphere<T>;
@@ -134,13 +136,58 @@ private:
     }
     [[nodiscard]] std::uint32_t item_at(std::uint32_t place) const { return items_.empty() ? place : items_[place]; }
 
-    // Finds the lists of `count` points and asks for the blocks in them.
-    template <typename PointAt, std::size_t Some>
-    void expect(std::size_t first, std::size_t count, const PointAt& point_at,
-                std::array<std::uint32_t, Some>& lists) const {
-        for (std::size_t i = 0; i < count; ++i) { directory_.expect(point_at(first + i)); }
-        for (std::size_t i = 0; i < count; ++i) { lists[i] = directory_.list_near(point_at(first + i)); }
-        for (std::size_t i = 0; i < count; ++i) {
+    template <typename Found>
+    [[gnu::always_inline]] void search_some(std::span<const vec3<T>> points, const Found& found) const {
+        std::array<std::uint32_t, in_step> lists{};
+        if (is_listed()) { find_lists(points, lists); }
+        near_finds<T, in_step> shared;
+        for (std::size_t i = 0, last = 0; i < points.size(); ++i) {
+            if (i == last) {
+                while (last < points.size() && lists[last] == lists[i]) { ++last; }
+                shared.known =
+                    is_listed() && last - i >= together && search_near(lists[i], points.subspan(i, last - i), shared);
+            }
+            sphere_hits<T> hits;
+            if (!shared.known) { search(covering_question<T>{points[i]}, lists[i], hits); }
+            found(i, shared.known ? shared.next() : hits.items());
+        }
+    }
+
+    // Searches for points that share a list; false where too many spheres are near.
+    [[nodiscard]] bool search_near(std::uint32_t list, std::span<const vec3<T>> points,
+                                   near_finds<T, in_step>& found) const {
+        bounds<T> box;
+        for (const vec3<T>& p : points) { box.add(p); }
+        near_spheres<T> near;
+        directory_.visit_lists(list, [&](const std::uint32_t* numbers, std::uint32_t count) {
+            simd::run_best<T, detail::pick_near>(blocks_.data(), numbers, count, box, near);
+        });
+        if (!near.complete) { return false; }
+        if (!items_.empty()) {
+            for (std::size_t i = 0; i < near.count; ++i) { near.item[i] = items_[near.item[i]]; }
+        }
+        simd::run_best<T, detail::ask_near>(near, points.data(), points.size(), found.items.data(), found.ends.data());
+        found.start();
+        return true;
+    }
+    void search(const covering_question<T>& question, std::uint32_t list, sphere_hits<T>& found) const {
+        if (is_listed()) {
+            ask_lists(list, question, found);
+        } else {
+            search_trees(question, found);
+        }
+    }
+
+    // Finds the lists of points and asks for the blocks in them.
+    void find_lists(std::span<const vec3<T>> points, std::array<std::uint32_t, in_step>& lists) const {
+        const bool far = blocks_.size() * sizeof(block) > simd::near_memory;
+        if (far) {
+            for (const vec3<T>& p : points) { directory_.expect(p); }
+        }
+        for (std::size_t i = 0; i < points.size(); ++i) { lists[i] = directory_.list_near(points[i]); }
+        if (!far) { return; }
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (i > 0 && lists[i] == lists[i - 1]) { continue; }
             directory_.visit_lists(lists[i], [&](const std::uint32_t* numbers, std::uint32_t boxes) {
                 for (std::uint32_t k = 0; k < boxes; ++k) { expect(blocks_[numbers[k]]); }
             });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -21,6 +22,9 @@ template <std::floating_point T>
     constexpr T least = std::numeric_limits<T>::min();
     return x < least ? least : std::bit_cast<T>(static_cast<bits>(std::bit_cast<bits>(x) + 1));
 }
+
+/// What takes no more bytes than that is in the caches, or soon: to ask for it ahead is work for nothing.
+inline constexpr std::size_t near_memory = std::size_t{1} << 20;
 
 /// Asks for the memory at `address` before it is needed.
 inline void prefetch([[maybe_unused]] const void* address) {

@@ -20,6 +20,7 @@ struct eight;
 /// Eight whole numbers, one by one. A comparison is -1 where it holds.
 struct plain_words {
     static constexpr std::size_t count = 8;
+    static constexpr std::size_t together = 4;  ///< how many `columns` are read
     std::int32_t v[count];
 
     template <typename Number>
@@ -31,9 +32,15 @@ struct plain_words {
     static plain_words all(std::int32_t x) {
         return each([x](std::size_t) { return x; });
     }
+    static plain_words load(const std::int32_t* from) {
+        return each([from](std::size_t i) { return from[i]; });
+    }
     static void store(std::int32_t* to, const plain_words& a) { std::memcpy(to, a.v, sizeof(a.v)); }
     friend plain_words operator&(const plain_words& a, const plain_words& b) {
         return each([&](std::size_t i) { return a.v[i] & b.v[i]; });
+    }
+    friend plain_words operator-(const plain_words& a, const plain_words& b) {
+        return each([&](std::size_t i) { return a.v[i] - b.v[i]; });
     }
     friend plain_words operator>>(const plain_words& a, int bits) {
         return each([&](std::size_t i) { return a.v[i] >> bits; });
@@ -53,7 +60,7 @@ struct plain_words {
         for (const std::int32_t w : where.v) { sum += w != 0; }
         return sum;
     }
-    /// The sixteen bits of each that come first in memory, and those that come last, as signed numbers.
+    /// The sixteen bits of each that come first in memory, and those that come last, as signed numbers times 65536.
     static plain_words first_half(const plain_words& a) { return half(a, 0); }
     static plain_words last_half(const plain_words& a) { return half(a, sizeof(std::int16_t)); }
     /// The word at `offset` of eight rows.
@@ -62,9 +69,9 @@ struct plain_words {
         for (std::size_t i = 0; i < count; ++i) { std::memcpy(&a.v[i], rows[i] + offset, sizeof(a.v[i])); }
         return a;
     }
-    /// Four columns from `offset` on.
+    /// So many columns as are read `together`, from `offset` on.
     static void columns(const char* const* rows, std::size_t offset, plain_words* to) {
-        for (std::size_t i = 0; i < 4; ++i) { to[i] = column(rows, offset + i * sizeof(std::int32_t)); }
+        for (std::size_t i = 0; i < together; ++i) { to[i] = column(rows, offset + i * sizeof(std::int32_t)); }
     }
 
 private:
@@ -72,7 +79,7 @@ private:
         return each([&](std::size_t i) {
             std::int16_t bits;
             std::memcpy(&bits, reinterpret_cast<const char*>(&a.v[i]) + offset, sizeof(bits));
-            return std::int32_t{bits};
+            return std::int32_t{bits} * 65536;
         });
     }
 };
@@ -127,6 +134,10 @@ struct plain_eight {
     }
     static plain_eight max(const plain_eight& a, const plain_eight& b) {
         return each([&](std::size_t i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
+    }
+    /// The numbers that lie at `places` from `table` on; of a place only what is below eight counts.
+    static plain_eight picked(const float* table, const words& places) {
+        return each([&](std::size_t i) { return table[static_cast<std::uint32_t>(places.v[i]) % count]; });
     }
     static plain_eight abs(const plain_eight& a) {
         return each([&](std::size_t i) { return std::abs(a.v[i]); });

@@ -28,9 +28,11 @@ struct avx2_words {
     using pairs [[gnu::vector_size(32)]] = std::int64_t;
     using unaligned_four [[gnu::vector_size(16), gnu::aligned(1), gnu::may_alias]] = std::int32_t;
     using unaligned [[gnu::vector_size(32), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
+    static constexpr std::size_t together = 4;
     vector v;
 
     static avx2_words all(std::int32_t x) { return {x - vector{}}; }
+    static avx2_words load(const std::int32_t* from) { return {*reinterpret_cast<const unaligned*>(from)}; }
     static void store(std::int32_t* to, avx2_words a) { *reinterpret_cast<unaligned*>(to) = a.v; }
     static avx2_words pick(avx2_words where, avx2_words a, avx2_words b) {
         return {(where.v & a.v) | (~where.v & b.v)};
@@ -43,8 +45,8 @@ struct avx2_words {
         asm("vmovmskps %1, %0" : "=r"(mask) : "x"(where.v));
         return static_cast<std::uint32_t>(std::popcount(mask));
     }
-    static avx2_words first_half(avx2_words a) { return {a.v << 16 >> 16}; }
-    static avx2_words last_half(avx2_words a) { return {a.v >> 16}; }
+    static avx2_words first_half(avx2_words a) { return {a.v << 16}; }
+    static avx2_words last_half(avx2_words a) { return {a.v & -0x10000}; }
     static avx2_words column(const char* const* rows, std::size_t offset) {
         std::int32_t each[8];
         for (std::size_t i = 0; i < 8; ++i) { std::memcpy(&each[i], rows[i] + offset, sizeof(each[i])); }
@@ -77,6 +79,7 @@ private:
 
 // Not among the friends of a class: g++ 12 compiles those for the machine of the flags.
 inline avx2_words operator&(avx2_words a, avx2_words b) { return {a.v & b.v}; }
+inline avx2_words operator-(avx2_words a, avx2_words b) { return {a.v - b.v}; }
 inline avx2_words operator>>(avx2_words a, int bits) { return {a.v >> bits}; }
 inline avx2_words operator<<(avx2_words a, int bits) { return {a.v << bits}; }
 
@@ -106,6 +109,11 @@ struct avx2_eight {
         asm("vmaxps %2, %1, %0" : "=x"(most) : "x"(a.v), "xm"(b.v));
         return {most};
     }
+    static avx2_eight picked(const float* table, words places) {
+        vector picked;
+        asm("vpermps %2, %1, %0" : "=x"(picked) : "x"(places.v), "xm"(load(table).v));
+        return {picked};
+    }
     static avx2_eight abs(avx2_eight a) { return {(vector)((words::vector)a.v & 0x7fffffff)}; }
     static avx2_eight root(avx2_eight a) {
         vector r;
@@ -120,13 +128,19 @@ struct avx2_eight {
             const four all = sums(halves(of[i]), halves(of[i + 1]), halves(of[i + 2]), halves(of[i + 3]));
             for (std::size_t k = 0; k < 4; ++k) { to[i + k] += all[k]; }
         }
-        for (std::size_t i = by_four; i < N; ++i) { to[i] += sums(halves(of[i]), four{}, four{}, four{})[0]; }
+        for (std::size_t i = by_four; i < N; ++i) { to[i] += sum(halves(of[i])); }
+    }
+    /// A product by itself: fused with a sum it would have other bits.
+    static avx2_eight product(vector x) {
+        asm("" : "+x"(x));
+        return {x};
     }
     static double sum_of_squares(avx2_eight a) {
         const doubles low = wide(__builtin_shufflevector(a.v, a.v, 0, 1, 2, 3));
         const doubles high = wide(__builtin_shufflevector(a.v, a.v, 4, 5, 6, 7));
-        const doubles half = low * low + high * high;
-        return (half[0] + half[2]) + (half[1] + half[3]);
+        const doubles half = product(low * low) + product(high * high);
+        const doubles sums = half + __builtin_shufflevector(half, half, 2, 3, 2, 3);
+        return sums[0] + sums[1];
     }
 
 private:
@@ -139,6 +153,14 @@ private:
         const four cd = __builtin_shufflevector(c, d, 0, 4, 1, 5) + __builtin_shufflevector(c, d, 2, 6, 3, 7);
         return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
     }
+    static float sum(four a) {
+        const four half = a + __builtin_shufflevector(a, a, 2, 3, 2, 3);
+        return half[0] + half[1];
+    }
+    static doubles product(doubles x) {
+        asm("" : "+x"(x));
+        return x;
+    }
     static doubles wide(four a) {
         doubles w;
         asm("vcvtps2pd %1, %0" : "=x"(w) : "xm"(a));
@@ -148,7 +170,7 @@ private:
 
 inline avx2_eight operator+(avx2_eight a, avx2_eight b) { return {a.v + b.v}; }
 inline avx2_eight operator-(avx2_eight a, avx2_eight b) { return {a.v - b.v}; }
-inline avx2_eight operator*(avx2_eight a, avx2_eight b) { return {a.v * b.v}; }
+inline avx2_eight operator*(avx2_eight a, avx2_eight b) { return avx2_eight::product(a.v * b.v); }
 inline avx2_eight operator/(avx2_eight a, avx2_eight b) { return {a.v / b.v}; }
 inline avx2_words operator<(avx2_eight a, avx2_eight b) { return {a.v < b.v}; }
 inline avx2_words operator<=(avx2_eight a, avx2_eight b) { return {a.v <= b.v}; }

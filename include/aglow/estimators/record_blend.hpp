@@ -69,6 +69,33 @@ inline void count_lookup(lookup_counters& counters, bool found) {
     if (!found) { ++counters.missed; }
 }
 
+/// What a blend sums up, and the answer that it comes to.
+template <Spectrum S, std::floating_point T>
+struct blend_sums {
+    S light{};
+    T weight{};
+    T error{};
+    double variance{};  ///< squares of faint light leave the range of floats
+    std::uint32_t records{0};
+
+    template <std::size_t Bands>
+    blend_sums& add(const lane_sums<Bands>& lanes) {
+        light = light + light_of<S>(lanes);
+        weight += lanes.parts[Bands];
+        error += lanes.parts[Bands + 1];
+        variance += lanes.variance;
+        records += lanes.records;
+        return *this;
+    }
+
+    [[nodiscard]] irradiance_answer<S, T> answer(T least_weight) const {
+        if (!(weight > least_weight)) { return {}; }
+        const T scale = 1 / weight;
+        return {light * static_cast<band_of<S>>(scale), (error + static_cast<T>(std::sqrt(variance))) * scale, weight,
+                records};
+    }
+};
+
 }  // namespace detail
 
 /// Gathers the answer for one point. Add records in a fixed order, and the answer is the same to the last bit.
@@ -104,12 +131,9 @@ public:
     }
 
     [[nodiscard]] irradiance_answer<S, T> answer() const {
-        sums all = sums_;
+        detail::blend_sums<S, T> all = sums_;
         if constexpr (detail::has_lanes<S, T>) { all.add(lanes_); }
-        if (!(all.weight > limits_.weight)) { return {}; }
-        const T scale = 1 / all.weight;
-        return {all.light * static_cast<band_of<S>>(scale),
-                (all.error + static_cast<T>(std::sqrt(all.variance))) * scale, all.weight, all.records};
+        return all.answer(limits_.weight);
     }
 
 protected:
@@ -120,22 +144,6 @@ private:
     static constexpr std::size_t eight = 8;
     struct none {};
     using lane_sums = detail::lanes_or<S, T, none>;
-
-    struct sums {
-        S light{};
-        T weight{};
-        T error{};
-        double variance{};  ///< squares of faint light leave the range of floats
-        std::uint32_t records{0};
-
-        void add(const lane_sums& lanes) {
-            light = light + detail::light_of<S>(lanes);
-            weight += lanes.parts[lanes.parts.size() - 2];
-            error += lanes.parts.back();
-            variance += lanes.variance;
-            records += lanes.records;
-        }
-    };
 
     template <typename ItemAt, typename Judged>
     void add_eight(std::size_t first, std::size_t some, const ItemAt& item_at, const Judged& judged) {
@@ -166,7 +174,7 @@ private:
     vec3<T> point_;
     vec3<T> normal_;
     const detail::lookup_limits<T>& limits_;
-    sums sums_{};
+    detail::blend_sums<S, T> sums_{};
     [[no_unique_address]] lane_sums lanes_{};
 };
 

@@ -57,6 +57,9 @@ struct record_words {
     static constexpr std::size_t count = slopes + (F.gradients ? 2 * Bands : 0);
 };
 
+/// What one is in a half of a word: see `words::first_half`.
+inline constexpr float half_unit = 0x1p-16f;
+
 /// Three vectors of `V`: a point or a direction in each lane.
 template <typename V>
 struct lane_points {
@@ -82,11 +85,11 @@ struct lane_tilts {
     /// Of a `stereographic`'s codes.
     [[gnu::always_inline]] static lane_tilts of(const typename V::words& codes) {
         using words = typename V::words;
-        const words second = words::last_half(codes);
+        const words first = words::first_half(codes), second = words::last_half(codes);
         const V one = V::all(1), zero = V::all(0), half = V::all(0.5f);
-        const V u = V::of(words::first_half(codes)) * V::all(stereographic::step_x<float>);
-        const V v = V::of(second >> 1) * V::all(stereographic::step_y<float>);
-        const V side = one - V::of((second & words::all(1)) << 1);
+        const V u = V::of(first) * V::all(stereographic::step_x<float> * half_unit);
+        const V v = V::of(second & words::all(-0x20000)) * V::all(stereographic::step_y<float> * half_unit / 2);
+        const V side = one - V::of(second & words::all(0x10000)) * V::all(2 * half_unit);
         const V middle = (one + u * u + v * v) * half;
         const V scale = one / middle;
         return {{u * scale, v * scale, side * V::max(scale - one, zero)}, side, zero - side * V::min(middle, one)};
@@ -98,33 +101,57 @@ struct lane_tilts {
     }
 };
 
-/// Adds what the first `some` of eight records say of a point to `sums`, and tells each one's verdict.
+/// What records side by side say of points: each lane has a record and a point of its own.
 template <typename S, record_features F>
-class add_eight {
+class lane_records {
 public:
     static constexpr std::size_t bands = packed_bands<S>;
     using record = irradiance_record<S, float, F>;
-    using sums = lane_sums<bands>;
+    using at = record_words<bands, F>;
 
-    /// Expects good addresses in all eight.
+    /// What each adds to its blend where it is `used`; elsewhere it means nothing.
     template <typename V>
-    [[gnu::always_inline]] static void run(const char* const* records, const float* bends, std::size_t some,
-                                           const vec3<float>& point, const vec3<float>& normal,
-                                           const lookup_limits<float>& limits, sums& all, std::int32_t* judged) {
+    struct addends {
+        typename V::words judged, used;
+        V parts[bands + 2];  ///< as of `lane_sums`
+        V noise;             ///< whose squares are the variance
+    };
+
+    /// The records' words. Expects good addresses in all lanes.
+    template <typename Words>
+    [[gnu::always_inline]] static void read(const char* const* records, Words (&words)[at::count]) {
         static_assert(std::is_trivially_copyable_v<record> && std::is_standard_layout_v<record>);
         static_assert(F.incident || sizeof(record) == sizeof(std::int32_t) * at::count);
-        typename V::words words[at::count];
-        read(records, words);
-        seen<V> s = look<V>(words, point, normal, limits);
+        constexpr std::size_t some = Words::together;
+        read(records, words, std::make_index_sequence<at::count / some>{});
+        for (std::size_t w = at::count / some * some; w < at::count; ++w) {
+            words[w] = Words::column(records, w * sizeof(std::int32_t));
+        }
+    }
+
+    /// `bends` as of `record_blend::add`; the normals are unit.
+    template <typename V, typename Words>
+    [[gnu::always_inline]] static addends<V> weigh(const Words (&words)[at::count], const V& bends,
+                                                   const lane_points<V>& points, const lane_points<V>& normals,
+                                                   const lookup_limits<float>& limits, const Words& among) {
+        seen<V> s = look(words, points, normals, limits);
         s.weight = weight(limits.metric, s.t2, s.turn);
-        const auto used = V::words::below(some) & s.good & (V::all(0) < s.weight);
-        V::words::store(judged, V::words::pick(used, is<typename V::words>(verdict::used), s.judged));
-        add(words, s, used, V::load(bends), all, std::make_index_sequence<bands>{});
+        const Words used = among & s.good & (V::all(0) < s.weight);
+        addends<V> a = add(words, s, bends, std::make_index_sequence<bands>{});
+        a.used = used;
+        a.judged = Words::pick(used, is<Words>(verdict::used), s.judged);
+        return a;
     }
 
 private:
-    using at = record_words<bands, F>;
     using slopes = compact_gradients<S, float>;
+
+    template <typename Words, std::size_t... Some>
+    [[gnu::always_inline]] static void read([[maybe_unused]] const char* const* records, [[maybe_unused]] Words* words,
+                                            std::index_sequence<Some...>) {
+        constexpr std::size_t some = Words::together;
+        (Words::columns(records, Some * some * sizeof(std::int32_t), words + Some * some), ...);
+    }
 
     /// A point as each lane sees it.
     template <typename V>
@@ -134,24 +161,14 @@ private:
         V offset[4];
     };
 
-    template <typename Words>
-    [[gnu::always_inline]] static void read(const char* const* records, Words* words) {
-        constexpr std::size_t by_four = at::count / 4 * 4;
-        for (std::size_t w = 0; w < by_four; w += 4) { Words::columns(records, w * sizeof(std::int32_t), words + w); }
-        for (std::size_t w = by_four; w < at::count; ++w) {
-            words[w] = Words::column(records, w * sizeof(std::int32_t));
-        }
-    }
-
     template <typename V, typename Words>
-    [[gnu::always_inline]] static seen<V> look(const Words* words, const vec3<float>& point, const vec3<float>& normal,
+    [[gnu::always_inline]] static seen<V> look(const Words* words, const lane_points<V>& point, const lane_points<V>& n,
                                                const lookup_limits<float>& limits) {
-        const lane_points<V> n = lane_points<V>::all(normal);
         const V radius = V::from_bits(words[at::radius]);
         const lane_tilts<V> facing = lane_tilts<V>::of(words[at::normal]);
-        const lane_points<V> way = lane_points<V>::difference(
-            lane_points<V>::all(point), {V::from_bits(words[at::position]), V::from_bits(words[at::position + 1]),
-                                         V::from_bits(words[at::position + 2])});
+        const lane_points<V> way =
+            lane_points<V>::difference(point, {V::from_bits(words[at::position]), V::from_bits(words[at::position + 1]),
+                                               V::from_bits(words[at::position + 2])});
         const lane_points<V> along = facing.to_local(way);
         const lane_points<V> bent = lane_points<V>::difference(n, facing.normal);
         const V turn = lane_points<V>::dot(bent, bent) * V::all(0.5f);
@@ -169,10 +186,10 @@ private:
         s.judged = Words::pick(alike, Words::pick(level, is<Words>(verdict::distance), is<Words>(verdict::plane)),
                                is<Words>(verdict::normal));
         const std::array<float, 4> k = slopes::factors({1, 1, 1, 1});
-        s.offset[0] = local.x * V::all(k[0]);
-        s.offset[1] = local.y * V::all(k[1]);
-        s.offset[2] = turned.y * V::all(-k[2]);
-        s.offset[3] = turned.x * V::all(k[3]);
+        s.offset[0] = local.x * V::all(k[0] * half_unit);
+        s.offset[1] = local.y * V::all(k[1] * half_unit);
+        s.offset[2] = turned.y * V::all(-k[2] * half_unit);
+        s.offset[3] = turned.x * V::all(k[3] * half_unit);
         return s;
     }
 
@@ -185,7 +202,7 @@ private:
     [[gnu::always_inline]] static V distance2(const Words* words, const lane_points<V>& p) {
         V flat = p.x * p.x + p.y * p.y;
         if constexpr (F.ellipse) {
-            const V step = V::all(compact_ellipse::step);
+            const V step = V::all(compact_ellipse::step * half_unit);
             const V x = V::of(Words::first_half(words[at::ellipse])) * step;
             const V y = V::of(Words::last_half(words[at::ellipse])) * step;
             const V along = x * p.x + y * p.y;
@@ -220,8 +237,8 @@ private:
     }
 
     template <typename Words, typename V, std::size_t... B>
-    [[gnu::always_inline]] static void add(const Words* words, const seen<V>& s, const Words& used, const V& bend,
-                                           sums& all, std::index_sequence<B...>) {
+    [[gnu::always_inline]] static addends<V> add(const Words* words, const seen<V>& s, const V& bend,
+                                                 std::index_sequence<B...>) {
         const V changes[bands] = {change<B>(words, s)...};
         const V light[bands] = {V::from_bits(words[at::light + B])...};
         V least = changes[0], most = light[0];
@@ -230,14 +247,44 @@ private:
         const V lowest = V::all(slopes::lowest);
         const V damping = lowest / V::max(lowest, V::all(0) - least);
         const V scale = s.weight * most;
-        const V parts[bands + 2] = {V::where(used, s.weight * (light[B] + light[B] * changes[B] * damping))...,
-                                    V::where(used, s.weight), V::where(used, scale * (s.t2 * bend))};
-        V::add_sums(parts, all.parts);
+        addends<V> a{{},
+                     {},
+                     {s.weight * (light[B] + light[B] * changes[B] * damping)..., s.weight, scale * (s.t2 * bend)},
+                     V::all(0)};
         if constexpr (F.noise) {
             const V code = V::of(words[at::noise] & Words::all(0xffff));
-            all.variance += V::sum_of_squares(V::where(used, scale * (code / V::max(V::all(65534) - code, V::all(1)))));
+            a.noise = scale * (code / V::max(V::all(65534) - code, V::all(1)));
         }
-        all.records += Words::count_of(used);
+        return a;
+    }
+};
+
+/// Adds up eight addends.
+template <typename V, std::size_t Bands, typename Addends, std::size_t... Part>
+[[gnu::always_inline]] inline void add_used(const Addends& a, lane_sums<Bands>& sums, std::index_sequence<Part...>) {
+    const V parts[] = {V::where(a.used, a.parts[Part])...};
+    V::add_sums(parts, sums.parts);
+    sums.variance += V::sum_of_squares(V::where(a.used, a.noise));
+    sums.records += V::words::count_of(a.used);
+}
+
+/// Adds what the first `some` of eight records say of a point to `sums`, and tells each one's verdict.
+template <typename S, record_features F>
+struct add_eight {
+    /// Expects good addresses in all eight.
+    template <typename V>
+    [[gnu::always_inline]] static void run(const char* const* records, const float* bends, std::size_t some,
+                                           const vec3<float>& point, const vec3<float>& normal,
+                                           const lookup_limits<float>& limits, lane_sums<packed_bands<S>>& sums,
+                                           std::int32_t* judged) {
+        using lane = lane_records<S, F>;
+        using points = lane_points<V>;
+        typename V::words words[lane::at::count];
+        lane::read(records, words);
+        const auto a = lane::template weigh<V>(words, V::load(bends), points::all(point), points::all(normal), limits,
+                                               V::words::below(some));
+        V::words::store(judged, a.judged);
+        add_used<V>(a, sums, std::make_index_sequence<lane::bands + 2>{});
     }
 };
 
