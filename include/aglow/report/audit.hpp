@@ -112,12 +112,9 @@ void state(audit_result& result, const audit_sample<T>& sample, const audit_opti
     for (const double e : errors) { result.largest_share = std::max(result.largest_share, std::abs(e) / sum); }
 }
 
-/// An audit of a picture without broken pixels.
-template <std::floating_point T, Probe P, Executor E>
-[[nodiscard]] audit_result audit_on(const audit_ground<T>& ground, const P& probe, const audit_options& options,
-                                    const E& run) {
-    audit_sample<T> sample{ground, options};
-    sample.draw(probe, run);
+/// All that probes say which were drawn.
+template <std::floating_point T>
+[[nodiscard]] audit_result judged(const audit_sample<T>& sample, const audit_options& options) {
     audit_result result{.target = options.target, .confidence = options.confidence, .quantile = options.quantile};
     result.unseen = options.unseen;
     result.dark_floor = sample.dark_floor();
@@ -141,7 +138,9 @@ template <std::floating_point T, Probe P, Executor E = in_sequence>
                                  const E& run = {}) {
     require_auditable(picture, options);
     if (count_broken_pixels(picture.image) > 0) { return detail::refuse_broken(picture, options); }
-    return detail::audit_on(detail::audit_ground<T>{picture, options}, probe, options, run);
+    detail::audit_sample<T> sample{options};
+    sample.draw(detail::audit_ground<T>{picture, options}, probe, run);
+    return detail::judged(sample, options);
 }
 
 /// Audits a plain picture, without guesses and classes.

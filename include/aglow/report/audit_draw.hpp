@@ -25,6 +25,7 @@ inline constexpr std::uint64_t extra_probes = 1;
 inline constexpr std::uint64_t main_spread = 500;
 inline constexpr std::uint64_t extra_spread = 501;
 inline constexpr std::uint64_t anew = 1000;
+inline constexpr std::uint64_t further = 2000;
 }  // namespace audit_part
 
 /// Chooses pixels, deals samples out to them and draws their probes. Expects options that were checked.
@@ -39,8 +40,8 @@ public:
           shares_{ground.shares},
           uniform_{static_cast<std::size_t>(shares_.uniform_part() * static_cast<double>(options.probes))} {}
 
-    /// How many of the main pixels are drawn uniformly: the first.
-    [[nodiscard]] std::size_t uniform() const { return uniform_; }
+    /// Takes so many samples to a batch on average, as a pilot would have found.
+    void deal(std::size_t per_batch) { per_batch_ = per_batch; }
     [[nodiscard]] std::size_t samples_per_batch() const { return per_batch_; }
     [[nodiscard]] std::size_t samples() const { return samples_; }
     [[nodiscard]] std::size_t broken() const { return broken_; }
@@ -121,6 +122,18 @@ public:
             batches[i] = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(per_batch_)));
         }
         return batches;
+    }
+
+    /// Draws the probes of `main_pixels()`, and says how they were drawn.
+    template <Probe P, Executor E>
+    [[nodiscard]] std::vector<probe_record> main(const P& probe, const E& run, const std::vector<std::size_t>& pixels,
+                                                 const std::vector<std::size_t>& batches, std::uint64_t part) {
+        std::vector<probe_record> records = all(probe, run, pixels, batches, part);
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            records[i].weight = shares_.weight(pixels[i]);
+            records[i].uniform = i < uniform_;
+        }
+        return records;
     }
 
     /// Draws the probe of each pixel, with its own number of samples in a batch.

@@ -21,6 +21,8 @@ namespace aglow {
 /// A finished picture and what its maker knows of it.
 template <std::floating_point T>
 struct audited_picture {
+    using scalar = T;
+
     image_view<T> image;
     /// A guess of each pixel's error, of the mean of its channels, in the picture's unit; empty: a share of the pixel's
     /// value. What is not positive or not finite is replaced by the dark floor.

@@ -24,40 +24,74 @@ namespace aglow::detail {
 template <std::floating_point T>
 class audit_sample {
 public:
-    /// Keeps a reference to `ground`.
-    audit_sample(const audit_ground<T>& ground, const audit_options& options)
-        : picture_{ground.picture},
-          options_{options},
-          mean_{ground.mean},
-          of_{picture_.image, ground.floor},
-          shares_{ground.shares},
-          draw_{ground, options} {}
+    explicit audit_sample(const audit_options& options) : options_{options} {}
 
     /// A pilot tells how many samples a probe needs; then the probes, all of them anew with more samples while their
     /// noise seems heavy-tailed, and more for classes that got too few.
     template <Probe P, Executor E>
-    void draw(const P& probe, const E& run) {
-        draw_.pilot(probe, run);
-        const std::vector<std::size_t> pixels = draw_.main_pixels();
-        std::vector<std::size_t> batches = draw_.allotted(probe, run, pixels, audit_part::main_spread);
-        records_ = draw_.all(probe, run, pixels, batches, audit_part::main_probes);
-        for (std::uint64_t again = 1; worth_drawing_anew(); ++again) {
-            draw_.quadruple();
+    void draw(const audit_ground<T>& ground, const P& probe, const E& run) {
+        read(ground.picture);
+        audit_draw<T> draw{ground, options_};
+        draw.pilot(probe, run);
+        const std::vector<std::size_t> pixels = draw.main_pixels();
+        std::vector<std::size_t> batches = draw.allotted(probe, run, pixels, audit_part::main_spread);
+        records_ = draw.main(probe, run, pixels, batches, audit_part::main_probes);
+        for (std::uint64_t again = 1; worth_drawing_anew(draw); ++again) {
+            draw.quadruple();
             for (std::size_t& b : batches) { b *= 4; }
-            records_ = draw_.all(probe, run, pixels, batches, audit_part::anew + again);
+            records_ = draw.main(probe, run, pixels, batches, audit_part::anew + again);
         }
         slow_ = seems_heavy();
-        const std::vector<std::size_t> rare = draw_.pixels_of_rare_classes();
-        extra_ = draw_.all(probe, run, rare, draw_.allotted(probe, run, rare, audit_part::extra_spread),
-                           audit_part::extra_probes);
+        const std::vector<std::size_t> rare = draw.pixels_of_rare_classes();
+        extra_ = draw.all(probe, run, rare, draw.allotted(probe, run, rare, audit_part::extra_spread),
+                          audit_part::extra_probes);
+        count(draw);
+        per_batch_ = draw.samples_per_batch();
+    }
+
+    /// Draws `more` probes besides, with as many samples each. They look at `ground`, of a picture of the same view.
+    template <Probe P, Executor E>
+    void grow(const audit_ground<T>& ground, std::size_t more, const P& probe, const E& run) {
+        audit_draw<T> draw = further_draw(ground, more);
+        draw.deal(per_batch_);
+        const std::vector<std::size_t> pixels = draw.main_pixels();
+        for (probe_record& r : draw.main(probe, run, pixels, draw.allotted(probe, run, pixels, audit_part::main_spread),
+                                         audit_part::main_probes)) {
+            records_.push_back(std::move(r));
+        }
+        count(draw);
+        slow_ = seems_heavy();
+    }
+
+    /// Gives every probe more samples, until there are `factor` times as many.
+    template <Probe P, Executor E>
+    void sharpen(const audit_ground<T>& ground, double factor, const P& probe, const E& run) {
+        const auto more = static_cast<std::size_t>(std::ceil((factor - 1) * static_cast<double>(per_batch_)));
+        audit_draw<T> draw = further_draw(ground, records_.size());
+        draw.deal(more);
+        std::vector<std::size_t> pixels;
+        for (const probe_record& r : records_) { pixels.push_back(r.pixel); }
+        const std::vector<std::size_t> batches = draw.allotted(probe, run, pixels, audit_part::main_spread);
+        const std::vector<probe_record> fresh = draw.all(probe, run, pixels, batches, audit_part::main_probes);
+        for (std::size_t i = 0; i < fresh.size(); ++i) { records_[i].merge(fresh[i]); }
+        count(draw);
+        per_batch_ += more;
+        slow_ = seems_heavy();
+    }
+
+    /// Lets the same probes judge another picture of the same view.
+    void read(const audited_picture<T>& picture) {
+        picture_ = picture;
+        mean_ = mean_value(picture.image);
+        of_ = {picture.image, options_.dark * std::abs(mean_)};
     }
 
     [[nodiscard]] double mean() const { return mean_; }
     [[nodiscard]] double dark_floor() const { return of_.floor; }
     [[nodiscard]] std::size_t probes() const { return records_.size() + extra_.size(); }
-    [[nodiscard]] std::size_t samples_per_probe() const { return draw_.samples_per_batch() * probe_batches; }
-    [[nodiscard]] std::size_t samples() const { return draw_.samples(); }
-    [[nodiscard]] std::size_t broken() const { return draw_.broken(); }
+    [[nodiscard]] std::size_t samples_per_probe() const { return per_batch_ * probe_batches; }
+    [[nodiscard]] std::size_t samples() const { return samples_; }
+    [[nodiscard]] std::size_t broken() const { return broken_; }
 
     /// Whether the noise falls so slowly that its variance may be infinite, and no bound is known that says otherwise.
     [[nodiscard]] bool heavy_tailed() const { return slow_ && !options_.sample_bound; }
@@ -77,40 +111,42 @@ public:
     /// Weighted relative error of each probed pixel, averaged over channels, with most of the probe's own noise taken
     /// out: their mean is the mean relative error of the picture.
     [[nodiscard]] std::vector<double> mean_errors() const {
-        return each(records_.size(), [&](const probe_record& r) {
+        return each([&](const probe_record& r) {
             const double gap = less_noisy([&](unsigned chosen) { return of_.error(r, chosen); });
-            return shares_.weight(r.pixel) * (gap + of_.denominator_noise2(r));
+            return r.weight * (gap + of_.denominator_noise2(r));
         });
     }
 
     /// The mean relative error as it probably is, for plans: the square of what is seen grows about as the variance of
     /// the probes' noise, which is twice as large for halves of the batches. As often below the truth as above it.
     [[nodiscard]] likely_error likely() const {
-        const auto seen = [&](const auto& of) { return each(records_.size(), of); };
         const std::vector<double> all =
-            seen([&](const probe_record& r) { return shares_.weight(r.pixel) * of_.error(r, every_batch); });
-        const std::vector<double> halves = seen([&](const probe_record& r) {
-            return shares_.weight(r.pixel) * mean_over_choices<4>([&](unsigned half) { return of_.error(r, half); });
+            each([&](const probe_record& r) { return r.weight * of_.error(r, every_batch); });
+        const std::vector<double> halves = each([&](const probe_record& r) {
+            return r.weight * mean_over_choices<4>([&](unsigned half) { return of_.error(r, half); });
         });
         return without_noise(all, halves);
     }
 
     /// Weighted size of the noise of each probe, relative as its error is: half the distance of its halves.
     [[nodiscard]] std::vector<double> noises() const {
-        return each(records_.size(),
-                    [&](const probe_record& r) { return shares_.weight(r.pixel) * of_.apart(r) / 2 / of_.scale(r); });
+        return each([&](const probe_record& r) { return r.weight * of_.apart(r) / 2 / of_.scale(r); });
     }
 
     /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in: never too small on
     /// average.
     [[nodiscard]] std::vector<double> plain_errors() const {
-        return each(draw_.uniform(), [&](const probe_record& r) { return of_.error(r, every_batch); });
+        std::vector<double> errors;
+        for (const probe_record& r : records_) {
+            if (r.uniform) { errors.push_back(of_.error(r, every_batch)); }
+        }
+        return errors;
     }
 
     /// Weighted B−U of each probed pixel, of the mean of its channels.
     [[nodiscard]] std::vector<double> gaps() const {
-        return each(records_.size(), [&](const probe_record& r) {
-            return shares_.weight(r.pixel) * (picture_.image.gray(r.pixel) - of_.gray(r, every_batch));
+        return each([&](const probe_record& r) {
+            return r.weight * (picture_.image.gray(r.pixel) - of_.gray(r, every_batch));
         });
     }
 
@@ -138,7 +174,9 @@ public:
             all.push_back(&r);
             classes.push_back(class_of(picture_, r.pixel));
         };
-        std::for_each(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(draw_.uniform()), add);
+        for (const probe_record& r : records_) {
+            if (r.uniform) { add(r); }
+        }
         std::for_each(extra_.begin(), extra_.end(), add);
         std::vector<class_scale> found;
         class_lists{classes, options_.class_probes}.for_each(
@@ -162,21 +200,34 @@ private:
         double largest = 0;
         for (const probe_record& r : records_) {
             const double jump = size / static_cast<double>(r.samples) / below(r);
-            largest = std::max(largest, shares_.weight(r.pixel) * jump);
+            largest = std::max(largest, r.weight * jump);
         }
         return largest / static_cast<double>(records_.size());
     }
 
-    [[nodiscard]] bool worth_drawing_anew() const {
-        if (!draw_.may_quadruple() || !seems_heavy()) { return false; }
+    [[nodiscard]] bool worth_drawing_anew(const audit_draw<T>& draw) const {
+        if (!draw.may_quadruple() || !seems_heavy()) { return false; }
         const double jump = largest_jump([this](const probe_record& r) { return of_.darkest(r); });
         return reach(options_.confidence) * jump > 0.1 * options_.target;
     }
 
+    /// Draws with numbers of their own.
+    [[nodiscard]] audit_draw<T> further_draw(const audit_ground<T>& ground, std::size_t probes) {
+        audit_options further = options_;
+        further.probes = probes;
+        further.stream = mix(options_.stream, audit_part::further + ++further_draws_);
+        return {ground, further};
+    }
+
+    void count(const audit_draw<T>& draw) {
+        samples_ += draw.samples();
+        broken_ += draw.broken();
+    }
+
     template <typename Of>
-    [[nodiscard]] std::vector<double> each(std::size_t first, const Of& of) const {
-        std::vector<double> values(first);
-        for (std::size_t i = 0; i < first; ++i) { values[i] = of(records_[i]); }
+    [[nodiscard]] std::vector<double> each(const Of& of) const {
+        std::vector<double> values(records_.size());
+        for (std::size_t i = 0; i < values.size(); ++i) { values[i] = of(records_[i]); }
         return values;
     }
 
@@ -200,13 +251,15 @@ private:
         return std::sqrt(std::max(1.75 * whole * whole - 0.75 * halves2, 0.25 * whole * whole));
     }
 
-    audited_picture<T> picture_;
+    audited_picture<T> picture_{};
     audit_options options_;
-    double mean_;
-    probe_reader<T> of_;
-    const pixel_shares& shares_;
-    audit_draw<T> draw_;
+    double mean_{0};
+    probe_reader<T> of_{};
     bool slow_{false};
+    std::size_t per_batch_{1};
+    std::size_t samples_{0};
+    std::size_t broken_{0};
+    std::uint64_t further_draws_{0};
     std::vector<probe_record> records_{};
     std::vector<probe_record> extra_{};
 };

@@ -41,6 +41,16 @@ struct probe_record {
     std::vector<double> batches{};  ///< [batch][channel]
     std::size_t samples{0};         ///< all samples spent
     std::size_t broken{0};          ///< answers that were infinite or NaN and were left out
+    double weight{1};               ///< uniform density over that of the pixel's drawing
+    bool uniform{true};             ///< whether it was drawn uniformly
+
+    /// Takes in the samples of `more`, of the same pixel.
+    void merge(const probe_record& more) {
+        const double share = static_cast<double>(more.samples) / static_cast<double>(samples + more.samples);
+        for (std::size_t i = 0; i < batches.size(); ++i) { batches[i] += share * (more.batches[i] - batches[i]); }
+        samples += more.samples;
+        broken += more.broken;
+    }
 
     /// Mean of channel `c` over the batches whose bits are set in `chosen`.
     [[nodiscard]] double mean(unsigned chosen, std::size_t c) const {

@@ -1,0 +1,236 @@
+// When to look at a picture, how hard, and what follows from it: the rule of `render_until`.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <aglow/core/random.hpp>
+#include <aglow/report/audit.hpp>
+#include <aglow/report/claim_plan.hpp>
+#include <aglow/report/decay.hpp>
+#include <aglow/report/until_result.hpp>
+
+namespace aglow::detail {
+
+/// What has been seen, and what to do next. One set of probes looks at all pictures: it grows and gets sharper where
+/// that is worth its cost.
+template <std::floating_point T>
+class until_rule {
+public:
+    explicit until_rule(const render_until_options& options) : options_{options}, noise_{options.most_noise} {}
+
+    /// Looks at the picture, and again with better probes until these tell enough, or cost too much.
+    template <Probe P, Executor E>
+    void look(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        if (sample_) {
+            sample_->read(picture);
+        } else {
+            draw(picture, probe, run);
+        }
+        add(seen(work));
+        while (unclear() && noise_ > options_.least_noise && affordable(work)) {
+            sharpen(std::max(noise_ / 2, options_.least_noise), picture, probe, work, run);
+        }
+        if (floor_is_feared()) {
+            grow(4 * options_.scout_probes, picture, probe, work, run);
+            if (noise_ > options_.audit.noise && affordable(work)) {
+                sharpen(std::max(noise_ / 2, options_.least_noise), picture, probe, work, run);
+            }
+        }
+        while (improve(picture, probe, work, run)) {}
+    }
+
+    /// Makes a claim possible with what probes there are, made as good as an audit's: no more work is to be done.
+    template <Probe P, Executor E>
+    void look_at_last(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        claiming_ = true;
+        if (noise_ > options_.audit.noise) { sharpen(options_.audit.noise, picture, probe, work, run); }
+        while (sample_->heavy_tailed() && may_be_sharper()) { sharpen(noise_ / 2, picture, probe, work, run); }
+        grow(std::max<std::size_t>(200, options_.audit.probes), picture, probe, work, run);
+    }
+
+    /// Whether a claim is likely enough to hold to be made.
+    [[nodiscard]] bool worth_a_claim(double work) const {
+        if (!claiming_) { return false; }
+        const claim_outlook known = outlook(work);
+        return known.seen * known.decay.at(work) <
+               1.1 * certifiable_error(known, {work, probes(), noise_}, known.z.front());
+    }
+
+    /// Claims the target.
+    [[nodiscard]] audit_result claim() {
+        audit_options how = options_.audit;
+        how.confidence = 1 - miss(++claims_);
+        const audit_result result = judged(*sample_, how);
+        checks_.back().bound = result.mean_error_bound;
+        return result;
+    }
+
+    /// Whether the measurements exclude every floor at or below the target. All are made by the same probes.
+    [[nodiscard]] bool hopeless() const {
+        const double doubt = checks_.back().error_deviation / checks_.back().error;
+        return distinct_ >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
+    }
+
+    [[nodiscard]] decay_fit decay() const { return fit_decay(checks_for_fit_); }
+
+    [[nodiscard]] claim_plan plan(double work) const { return cheapest_claim(outlook(work)); }
+
+    [[nodiscard]] double next_work(double work) const {
+        const double least = options_.least_growth * work;
+        const double next = claiming_ ? least : std::clamp(plan(work).work, least, options_.most_growth * work);
+        return std::min(next, options_.most_work);
+    }
+
+    /// Where the target will be certified, as far as can be told.
+    [[nodiscard]] double predicted_work(double work) const {
+        const claim_outlook known = outlook(work);
+        const claim_plan best = cheapest_claim(known);
+        return is_finite(best.work) ? certified_work(known, best, 1) : best.work;
+    }
+
+    [[nodiscard]] const std::vector<until_check>& checks() const { return checks_; }
+    [[nodiscard]] std::size_t claims() const { return claims_; }
+    [[nodiscard]] std::size_t samples() const { return sample_ ? sample_->samples() : 0; }
+
+private:
+    /// One step towards the probes of the cheapest claim, if that is due; false where there is nothing more to do.
+    template <Probe P, Executor E>
+    bool improve(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        const claim_plan best = plan(work);
+        if (best.work > work) { return false; }
+        claiming_ = true;
+        const bool heavy = sample_->heavy_tailed();
+        // First fewer noisy probes are made sharp: more would have to be made so too.
+        if (best.noise < 0.95 * noise_ && (!heavy || may_be_sharper())) {
+            sharpen(best.noise, picture, probe, work, run);
+        } else if (best.probes > probes()) {
+            grow(best.probes, picture, probe, work, run);
+        } else if (heavy && may_be_sharper()) {
+            sharpen(noise_ / 2, picture, probe, work, run);
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    template <Probe P, Executor E>
+    void draw(const audited_picture<T>& picture, const P& probe, const E& run) {
+        audit_options look = options_.audit;
+        look.probes = options_.scout_probes;
+        look.noise = noise_;
+        look.patience = 1;
+        sample_.emplace(look);
+        sample_->draw(audit_ground<T>{picture, options_.audit}, probe, run);
+    }
+
+    /// Gives the probes so many samples that their noise falls to `noise`.
+    template <Probe P, Executor E>
+    void sharpen(double noise, const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        sample_->sharpen(audit_ground<T>{picture, options_.audit}, square(noise_ / noise), probe, run);
+        add(seen(work));
+    }
+
+    /// Draws more probes until there are `count`.
+    template <Probe P, Executor E>
+    void grow(std::size_t count, const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        if (count <= probes()) { return; }
+        sample_->grow(audit_ground<T>{picture, options_.audit}, count - probes(), probe, run);
+        add(seen(work));
+    }
+
+    [[nodiscard]] std::size_t probes() const { return sample_->probes(); }
+
+    [[nodiscard]] until_check seen(double work) {
+        const std::vector<double> each = sample_->mean_errors();
+        const running_mean errors = mean_of(each);
+        bound_ = skewed_upper_bound(each, 1 - miss(claims_ + 1));
+        if (errors.mean() > 0) { ratio_ = errors.deviation() / errors.mean(); }
+        own_ = mean_of(sample_->noises()).mean();
+        noise_ = std::max(0.01, own_ / 0.8 / options_.audit.target);  // E|n| of a normal n is 0.8 of its deviation
+        const likely_error likely = sample_->likely();
+        return {work, likely.error, likely.deviation, 0, probes()};
+    }
+
+    [[nodiscard]] bool unclear() const {
+        const until_check& last = checks_.back();
+        return sample_->heavy_tailed() || !(last.error_deviation < 0.15 * last.error);
+    }
+
+    /// Whether sharper probes are cheap beside the picture. Where noise falls slowly, a picture that goes on does not
+    /// make it clearer: sharper probes do.
+    [[nodiscard]] bool affordable(double work) const {
+        const double cost = 3 * static_cast<double>(sample_->samples_per_probe() * probes()) * options_.probe_work;
+        return cost <= (sample_->heavy_tailed() ? 0.5 : 0.1) * work;
+    }
+
+    [[nodiscard]] claim_outlook outlook(double work) const {
+        const until_check& last = checks_.back();
+        claim_outlook known{.target = options_.audit.target,
+                            .growth = options_.least_growth,
+                            .work = work,
+                            .decay = decay(),
+                            .doubt = 0.05,
+                            .ratio = ratio_,
+                            .probes = probes(),
+                            .noise = noise_,
+                            .own = own_,
+                            .samples = static_cast<double>(sample_->samples_per_probe()),
+                            .sample_work = options_.probe_work,
+                            .most_probes = std::max(options_.most_probes, probes()),
+                            .most_noise = std::max(options_.least_noise, options_.most_noise / 2),
+                            .least_noise = options_.least_noise};
+        for (std::size_t i = 0; i < known.z.size(); ++i) { known.z[i] = normal_quantile(1 - miss(claims_ + 1 + i)); }
+        const double behind = error_behind(known, {last.work, probes(), noise_}, known.z.front(), bound_);
+        known.seen = std::max(behind, 0.05 * bound_) / known.decay.at(last.work);
+        return known;
+    }
+
+    /// Whether noise that seems heavy-tailed may be looked at with four times the samples.
+    [[nodiscard]] bool may_be_sharper() const {
+        const double most = options_.audit.patience / square(options_.audit.noise * options_.audit.target);
+        return 4 * static_cast<double>(sample_->samples_per_probe()) <= most;
+    }
+
+    /// Whether the error seems to stay above the target, or to need much more work.
+    [[nodiscard]] bool floor_is_feared() const {
+        if (distinct_ < 3) { return false; }
+        const decay_fit fit = decay();
+        return fit.floor > 0.8 * options_.audit.target || fit.work_to(options_.audit.target) > 8 * checks_.back().work;
+    }
+
+    [[nodiscard]] double miss(std::size_t claim) const {
+        return (1 - options_.audit.confidence) * share_of_miss(claim);
+    }
+
+    void add(const until_check& check) {
+        if (checks_.empty() || checks_.back().work < check.work) {
+            ++distinct_;
+        } else {  // better probes saw the same picture
+            checks_for_fit_.pop_back();
+        }
+        checks_.push_back(check);
+        const double deviation = std::max(check.error_deviation, 1e-9 * std::abs(check.error));
+        checks_for_fit_.push_back({check.work, check.error, deviation});
+    }
+
+    const render_until_options& options_;
+    std::vector<until_check> checks_{};
+    std::vector<measured_error> checks_for_fit_{};
+    std::size_t distinct_{0};
+    std::optional<audit_sample<T>> sample_{};
+    double noise_;     // of the probes, as a share of the target
+    double own_{0};    // mean size of that
+    double bound_{1};  // on the error, as the next claim would state it
+    double ratio_{1};  // standard deviation over mean of a probe's error
+    bool claiming_{false};
+    std::size_t claims_{0};
+};
+
+}  // namespace aglow::detail
