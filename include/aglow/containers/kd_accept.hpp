@@ -71,7 +71,6 @@ template <typename T, typename Accept>
 [[gnu::noinline]] void announce(void* caller, kd_candidates<T>& found, std::uint32_t first) {
     Accept& accept = *static_cast<Accept*>(caller);
     for (std::uint32_t i = first; i < found.count; ++i) { accept(found.slots[i]); }
-    simd::keep_call();
 }
 template <typename Accept>
 [[gnu::noinline]] bool accepts(void* caller, std::uint32_t slot) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <aglow/containers/kd_boxes.hpp>
 #include <aglow/containers/kd_halve.hpp>
@@ -39,7 +40,8 @@ struct set_off_kernel {
     template <typename P, typename T>
     [[gnu::always_inline]] static inline T run(const kd_storage<T>& tree, kd_probe<T>& probe, kd_task<T> task) {
         probe.at_home = false;
-        if (!(task.hint2 > 0)) { go_home_kernel::run<P>(tree, probe); }
+        probe.elsewhere = false;
+        if (!(task.hint2 > 0)) { move_home_kernel::run<P>(tree, probe); }
         const T radius2 = first_radius2(tree, probe, task);
         start_around<P>(tree, probe, radius2);
         return radius2;
@@ -63,24 +65,28 @@ struct approach_kernel {
         const bool hinted = task.hint2 > 0;
         for (kd_probe<T>& probe : probes) {
             probe.at_home = !hinted;
+            probe.elsewhere = false;
             probe.home[static_cast<std::size_t>(tree.height)] = 0;
         }
         for (int level = hinted ? 0 : tree.height; level > 0; --level) {
             const auto l = static_cast<std::size_t>(level);
+            std::uint32_t last = probes.back().home[l];
             for (kd_probe<T>& probe : probes) {
                 step_home<P>(tree, probe, l);
-                if (level > 1) { prefetch_all(tree.node(level - 1, probe.home[l - 1])); }
+                if (level == 2) { probe.elsewhere = probe.home[2] != std::exchange(last, probe.home[2]); }
+                if (probe.elsewhere && level > 1) { prefetch_all(tree.node(level - 1, probe.home[l - 1])); }
             }
         }
         for (std::size_t i = 0; i < probes.size(); ++i) {
             radius2[i] = first_radius2(tree, probes[i], task);
             start_around<P>(tree, probes[i], radius2[i]);
             advance<P>(tree, probes[i], radius2[i], 1);
-            prefetch_listed(tree, probes[i], 1);
+            if (probes[i].elsewhere) { prefetch_listed(tree, probes[i], 1); }
         }
         for (std::size_t i = 0; i < probes.size(); ++i) {
             advance<P>(tree, probes[i], radius2[i], 0);
-            prefetch_listed(tree, probes[i], 0);
+            if (probes[i].elsewhere) { prefetch_listed(tree, probes[i], 0); }
+            probes[i].elsewhere = false;
         }
     }
 };

@@ -27,6 +27,8 @@ struct kd_probe {
     std::uint32_t listed;
     vec3<T> place;
     bool at_home;
+    /// Whether it lives far from the one before it, whose leaves are in the cache, and asks for its own ahead.
+    bool elsewhere;
     /// Where the search stands, and where it started.
     int level, top;
     std::array<std::uint32_t, kd_max_height + 1> home, count, next;
@@ -69,6 +71,22 @@ struct go_home_kernel {
         probe.home[level] = 0;
         for (; level > 0; --level) { step_home<P>(tree, probe, level); }
         probe.at_home = true;
+    }
+};
+
+template <typename U>
+void prefetch_all(const U& what) {
+    for (std::size_t i = 0; i < sizeof(U); i += 64) { simd::prefetch(reinterpret_cast<const char*>(&what) + i); }
+}
+
+/// As go_home, and sees whether that is far from where the probe lived before: then it asks for its leaves ahead.
+struct move_home_kernel {
+    template <typename P, typename T>
+    [[gnu::always_inline]] static inline void run(const kd_storage<T>& tree, kd_probe<T>& probe) {
+        const std::uint32_t last = probe.home[2];
+        go_home_kernel::run<P>(tree, probe);
+        probe.elsewhere = probe.home[2] != last;
+        if (probe.elsewhere) { prefetch_all(tree.leaves[probe.home[0]]); }
     }
 };
 

@@ -24,11 +24,6 @@ template <typename P, typename T>
                       P::sub(P::load(leaf.z + at), P::all(point.z)));
 }
 
-template <typename U>
-void prefetch_all(const U& what) {
-    for (std::size_t i = 0; i < sizeof(U); i += 64) { simd::prefetch(reinterpret_cast<const char*>(&what) + i); }
-}
-
 /// Stands a search before a node of `level`.
 template <typename T>
 void start(kd_probe<T>& probe, int level, std::uint32_t node) {
@@ -121,6 +116,20 @@ struct kd_list {
     std::uint32_t count, room;
 };
 
+/// Asks for all that the listed nodes of `level` hold.
+template <typename T>
+void prefetch_listed(const kd_storage<T>& tree, const kd_probe<T>& probe, int level) {
+    const auto l = static_cast<std::size_t>(level);
+    for (std::uint32_t i = probe.next[l]; i < probe.count[l]; ++i) {
+        const std::uint32_t n = probe.open[l][i];
+        if (level == 0) {
+            prefetch_all(tree.leaves[n]);
+        } else {
+            prefetch_all(tree.node(level, n));
+        }
+    }
+}
+
 /// Adds the points closer than `bound` of the leaves that come next, as many as there is room for; false when there are
 /// no more.
 struct scan_kernel {
@@ -128,6 +137,7 @@ struct scan_kernel {
     [[gnu::always_inline]] static inline bool run(const kd_storage<T>& tree, kd_probe<T>& probe, T bound,
                                                   kd_list<T>& found) {
         if (!advance<P>(tree, probe, bound, 0)) { return false; }
+        if (probe.elsewhere) { prefetch_listed(tree, probe, 0); }
         const P limit = P::all(bound);
         std::uint32_t count = found.count;
         for (; probe.next[0] < probe.count[0] && count + kd_leaf_size <= found.room; ++probe.next[0]) {
@@ -144,20 +154,6 @@ struct scan_kernel {
         return true;
     }
 };
-
-/// Asks for all that the listed nodes of `level` hold.
-template <typename T>
-void prefetch_listed(const kd_storage<T>& tree, const kd_probe<T>& probe, int level) {
-    const auto l = static_cast<std::size_t>(level);
-    for (std::uint32_t i = probe.next[l]; i < probe.count[l]; ++i) {
-        const std::uint32_t n = probe.open[l][i];
-        if (level == 0) {
-            prefetch_all(tree.leaves[n]);
-        } else {
-            prefetch_all(tree.node(level, n));
-        }
-    }
-}
 
 /// The caller's word on what may be found, behind pointers that no kernel sees through; none of them: all may.
 template <typename T>

@@ -258,6 +258,7 @@ std::optional<kd_found<T>> kd_tree<T>::nearest_one(const vec3<T>& point, T radiu
     probe.point = point;
     probe.enough = enough<Accept>(what);
     probe.at_home = true;
+    probe.elsewhere = false;
     const auto best =
         runner::template run<detail::nearest_one_kernel>(tree_, probe, what.limit, detail::filter_of<T>(accept));
     if (!best.found) { return std::nullopt; }
@@ -273,6 +274,7 @@ void kd_tree<T>::within(const vec3<T>& point, T radius2, Visit&& visit) const {
     detail::kd_probe<T> probe;
     probe.point = point;
     probe.at_home = false;
+    probe.elsewhere = false;
     probe.enough = std::numeric_limits<std::uint32_t>::max();
     detail::start(probe, tree_.height, 0);
     T distances2[room + simd::lanes];

@@ -26,16 +26,11 @@ template <std::floating_point T>
 /// What takes no more bytes than that is in the caches, or soon: to ask for it ahead is work for nothing.
 inline constexpr std::size_t near_memory = std::size_t{1} << 20;
 
-/// Asks for the memory at `address` before it is needed.
+/// Asks for the memory at `address` before it is needed. The empty line tells g++ that a function with nothing else in
+/// it has an effect: calls of it were left out.
 inline void prefetch([[maybe_unused]] const void* address) {
 #if defined(__GNUC__)
     __builtin_prefetch(address);
-#endif
-}
-
-/// Keeps the call of a function that does nothing but prefetch: g++ takes it for one without any effect.
-inline void keep_call() {
-#if defined(__GNUC__)
     asm volatile("");
 #endif
 }
