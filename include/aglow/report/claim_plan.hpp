@@ -17,9 +17,9 @@
 
 namespace aglow {
 
-/// The share of all probability to be wrong that claim `k` (1, 2, ...) gets: 0.15 · 0.85^(k−1), 1 in all. The same
+/// The share of all probability to be wrong that claim `k` (1, 2, ...) gets: 0.2 · 0.8^(k−1), 1 in all. The same
 /// probes claim again and again, and each time about as well.
-[[nodiscard]] inline double share_of_miss(std::size_t k) { return 0.15 * std::pow(0.85, static_cast<double>(k) - 1); }
+[[nodiscard]] inline double share_of_miss(std::size_t k) { return 0.2 * std::pow(0.8, static_cast<double>(k) - 1); }
 
 /// How many probes shall claim from when on, and the standard error of each as a share of the target.
 struct claim_plan {
@@ -45,7 +45,7 @@ struct claim_outlook {
     double own{0};                  ///< mean size of that, relative as errors are
     double samples{1};              ///< that each took
     double sample_work{0};
-    std::size_t least_probes{400};  ///< fewer, and of skewed errors, are too often wrong together
+    std::size_t least_probes{300};  ///< fewer, and of skewed errors, are too often wrong together
     std::size_t most_probes{2000};
     double most_noise{0.7};  ///< above, what probes add to the errors is as uncertain as these
     double least_noise{0.35};
