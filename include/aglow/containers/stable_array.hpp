@@ -1,6 +1,7 @@
 // An array that only grows at its end and never moves what it holds, so readers need no lock.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -33,8 +34,11 @@ public:
     }
 
     ~stable_array() {
-        for (std::uint32_t i = 0; i < size_; ++i) { std::destroy_at(&(*this)[i]); }
+        std::size_t left = size_;
         for (std::size_t i = 0; i < chunks_.size() && at(i); ++i) {
+            const std::size_t here = std::min(left, chunk_length(i));
+            std::destroy_n(at(i), here);
+            left -= here;
             std::allocator<X>{}.deallocate(at(i), chunk_length(i));
         }
     }
