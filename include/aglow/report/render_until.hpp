@@ -80,7 +80,10 @@ template <typename Advance, Probe P, Executor E = in_sequence>
         rule.look(plain, probe, work, run);
         const bool out_of_work = work >= options.most_work;
         if (out_of_work) { rule.look_at_last(plain, probe, work, run); }
-        if (out_of_work || rule.worth_a_claim(work)) { certificate = rule.claim(); }
+        do {
+            if (out_of_work || rule.worth_a_claim(work)) { certificate = rule.claim(); }
+        } while (certificate.status != audit_status::certified && !out_of_work &&
+                 rule.improve(plain, probe, work, run));
         const bool reached = certificate.status == audit_status::certified;
         const double predicted = reached ? work : rule.predicted_work(work);
         const bool going_on = !options.progress || options.progress({rule.checks().back(), predicted});

@@ -43,7 +43,28 @@ public:
                 sharpen(std::max(noise_ / 2, options_.least_noise), picture, probe, work, run);
             }
         }
-        while (improve(picture, probe, work, run)) {}
+    }
+
+    /// One step towards the probes of the cheapest claim, if that is due; false where there is nothing more to do.
+    template <Probe P, Executor E>
+    bool improve(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        const claim_plan best = plan(work);
+        if (best.work > work) { return false; }
+        claiming_ = true;
+        const bool heavy = sample_->heavy_tailed();
+        // First fewer noisy probes are made sharp: more would have to be made so too.
+        if (best.noise < 0.95 * noise_ && (!heavy || may_be_sharper())) {
+            sharpen(best.noise, picture, probe, work, run);
+        } else if (best.probes > probes()) {
+            // Half as many more, and then a claim: fewer than planned may do.
+            const std::size_t more = std::max(claim_outlook{}.least_probes, probes() + probes() / 2);
+            grow(std::min(best.probes, more), picture, probe, work, run);
+        } else if (heavy && may_be_sharper()) {
+            sharpen(noise_ / 2, picture, probe, work, run);
+        } else {
+            return false;
+        }
+        return true;
     }
 
     /// Makes a claim possible with what probes there are, made as good as an audit's: no more work is to be done.
@@ -100,26 +121,6 @@ public:
     [[nodiscard]] std::size_t samples() const { return sample_ ? sample_->samples() : 0; }
 
 private:
-    /// One step towards the probes of the cheapest claim, if that is due; false where there is nothing more to do.
-    template <Probe P, Executor E>
-    bool improve(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
-        const claim_plan best = plan(work);
-        if (best.work > work) { return false; }
-        claiming_ = true;
-        const bool heavy = sample_->heavy_tailed();
-        // First fewer noisy probes are made sharp: more would have to be made so too.
-        if (best.noise < 0.95 * noise_ && (!heavy || may_be_sharper())) {
-            sharpen(best.noise, picture, probe, work, run);
-        } else if (best.probes > probes()) {
-            grow(best.probes, picture, probe, work, run);
-        } else if (heavy && may_be_sharper()) {
-            sharpen(noise_ / 2, picture, probe, work, run);
-        } else {
-            return false;
-        }
-        return true;
-    }
-
     template <Probe P, Executor E>
     void draw(const audited_picture<T>& picture, const P& probe, const E& run) {
         audit_options look = options_.audit;
