@@ -351,6 +351,35 @@ TEST_CASE("audit: noise beyond what was planned is not taken for the picture's e
     CHECK(held >= rounds * synthetic::least_coverage(rounds));
 }
 
+TEST_CASE(
+    "audit sample: probes that grew and were sharpened still tell the error of whatever picture they are held "
+    "against") {
+    // Drawn for one picture, grown on a second whose guesses fear errors elsewhere, and read against a third.
+    const field first{damage::edges, 1};
+    field second{damage::dark, 2};
+    const field third{damage::noise, 3};
+    running_mean seen;
+    running_mean samples;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        detail::audit_sample<double> sample{{.target = 0.05, .probes = 200, .noise = 0.7, .seed = seed}};
+        const audited_picture<double> before{first.image(), first.guess};
+        const audited_picture<double> after{second.image(), second.guess};
+        sample.draw(detail::audit_ground<double>{before, {}}, first.probe(), in_sequence{});
+        const double drawn = static_cast<double>(sample.samples_per_probe());
+        sample.sharpen(detail::audit_ground<double>{after, {}}, 4, first.probe(), in_sequence{});
+        CHECK(static_cast<double>(sample.samples_per_probe()) == Approx(4 * drawn).epsilon(0.01));
+        sample.grow(detail::audit_ground<double>{after, {}}, 300, first.probe(), in_sequence{});
+        CHECK(sample.probes() == 500);
+        sample.read({third.image(), third.guess});
+        seen.add(sample.likely().error / third.mean_error());
+        samples.add(static_cast<double>(sample.samples()) / (4 * drawn * 500));
+    }
+    CAPTURE(seen.mean(), seen.standard_error());
+    CHECK(std::abs(seen.mean() - 1) < 0.02 + 3 * seen.standard_error());
+    CHECK(seen.standard_error() < 0.02);
+    CHECK(samples.mean() == Approx(1.15).epsilon(0.1));  // an eighth more, for the looks that deal them out
+}
+
 TEST_CASE("audit: wrong settings are refused by name") {
     const field f{damage::none};
     CHECK(synthetic::refuses("target", [&] { (void)audit(f.image(), f.probe(), {.target = 0}); }));

@@ -71,7 +71,7 @@ TEST_CASE("claim plan: no other number or noise of probes, nor more or less work
         for (const double probes : {0.5, 0.8, 1.25, 2.0}) {
             for (const double noise : {0.7, 0.85, 1.0, 1.2}) {
                 const auto n = static_cast<std::size_t>(probes * static_cast<double>(best.probes));
-                if (n < known.least_probes || n > known.most_probes) { continue; }
+                if (n < claim_outlook::least_probes || n > known.most_probes) { continue; }
                 const claim_plan other{work * best.work, n,
                                        std::clamp(noise * best.noise, known.least_noise, known.most_noise)};
                 CHECK(expected_cost(known, other) > 0.97 * least);

@@ -41,6 +41,16 @@ TEST_CASE("probe: samples asked one by one or in batches cost the same and have 
     CHECK(spread.mean() == Approx(1 / 16.0).epsilon(0.05));
 }
 
+TEST_CASE("probe: merged samples weigh as many as they are") {
+    const auto constant = [](double x) { return [x](std::size_t, std::uint64_t, std::size_t) { return x; }; };
+    probe_record one = draw_probe(constant(2), 7, 1, 10, path_key{1, 0, 0});
+    const probe_record more = draw_probe(constant(6), 7, 1, 30, path_key{2, 0, 0});
+    one.merge(more);
+    CHECK(one.mean(0) == Approx(5));
+    CHECK(one.batch_variance(0) == Approx(0).margin(1e-12));
+    CHECK(one.samples == 8 * 40);
+}
+
 TEST_CASE(
     "probe: the less noisy estimate of a distance is never below it, and less than half as far above where it "
     "matters") {

@@ -162,6 +162,25 @@ TEST_CASE("render_until: looks come at growing work, and claims get ever less of
     CHECK(1 - result.certificate.confidence == Approx(0.05 * share_of_miss(result.claims)));
 }
 
+TEST_CASE("render_until: probes whose noise never falls, or has no mean, come to an end and certify nothing") {
+    renderer render{0, 0.1, 0.5, 1};
+    const auto stubborn = [&](std::size_t pixel, std::uint64_t seed, std::size_t) {
+        return render.f.truth[pixel] * (1 + 0.5 * synthetic::normal_of(seed));
+    };
+    const auto endless = [&](std::size_t pixel, std::uint64_t seed, std::size_t count) {
+        random_sampler<double> random{seed};
+        double sum = 0;
+        for (std::size_t i = 0; i < count; ++i) { sum += 1 / std::max(1e-12, random.next_1d()); }
+        return render.f.truth[pixel] * sum / static_cast<double>(count) / 10;
+    };
+    render_until_options o = options(1);
+    o.most_work = 64;
+    CHECK(render_until(render, stubborn, o).status != until_status::reached);
+    const until_result result = render_until(render, endless, o);
+    CHECK(result.status != until_status::reached);
+    CHECK(result.probe_samples < 100'000'000);
+}
+
 TEST_CASE("render_until: wrong settings are refused by name") {
     renderer render{0, 1, 0.5, 1};
     render_until_options o = options(1);

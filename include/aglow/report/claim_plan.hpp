@@ -31,6 +31,7 @@ struct claim_plan {
 /// What is known before a claim, and between which bounds it may be chosen.
 struct claim_outlook {
     static constexpr std::size_t looks = 8;
+    static constexpr std::size_t least_probes = 300;  ///< fewer, and of skewed errors, are too often wrong together
 
     double target{0.05};
     std::array<double, looks> z{};  ///< normal quantiles of the confidence of the next claims
@@ -45,7 +46,6 @@ struct claim_outlook {
     double own{0};                  ///< mean size of that, relative as errors are
     double samples{1};              ///< that each took
     double sample_work{0};
-    std::size_t least_probes{300};  ///< fewer, and of skewed errors, are too often wrong together
     std::size_t most_probes{2000};
     double most_noise{0.7};  ///< above, what probes add to the errors is as uncertain as these
     double least_noise{0.35};
@@ -108,7 +108,7 @@ struct claim_outlook {
     const double most_noise = std::min(known.noise, known.most_noise);
     for (double noise = most_noise; noise >= 0.99 * std::min(most_noise, known.least_noise);
          noise /= 1.1892) {  // 2^(1/4)
-        for (std::size_t probes = std::max(known.probes, known.least_probes); probes <= known.most_probes;
+        for (std::size_t probes = std::max(known.probes, claim_outlook::least_probes); probes <= known.most_probes;
              probes += (probes + 3) / 4) {
             claim_plan plan{known.work, probes, noise};
             const double goal = certifiable_error(known, plan, known.z.front());

@@ -37,7 +37,7 @@ inline void require_until(const render_until_options& options) {
     require(options.least_noise > 0, "least_noise: not positive");
     require(options.most_noise >= options.least_noise, "most_noise: below least_noise");
     require(options.scout_probes >= 30, "scout_probes: fewer than 30");
-    require(options.most_probes >= 200, "most_probes: fewer than 200");
+    require(options.most_probes >= claim_outlook::least_probes, "most_probes: fewer than 300");
     require(options.probe_work >= 0 && is_finite(options.probe_work), "probe_work: negative or not finite");
 }
 

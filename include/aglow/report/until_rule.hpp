@@ -34,12 +34,12 @@ public:
             draw(picture, probe, run);
         }
         add(seen(work));
-        while (unclear() && noise_ > options_.least_noise && affordable(work)) {
+        while (unclear() && noise_ > options_.least_noise && may_be_sharper() && affordable(work)) {
             sharpen(std::max(noise_ / 2, options_.least_noise), picture, probe, work, run);
         }
         if (floor_is_feared()) {
             grow(4 * options_.scout_probes, picture, probe, work, run);
-            if (noise_ > options_.audit.noise && affordable(work)) {
+            if (noise_ > options_.audit.noise && may_be_sharper() && affordable(work)) {
                 sharpen(std::max(noise_ / 2, options_.least_noise), picture, probe, work, run);
             }
         }
@@ -51,15 +51,14 @@ public:
         const claim_plan best = plan(work);
         if (best.work > work) { return false; }
         claiming_ = true;
-        const bool heavy = sample_->heavy_tailed();
         // First fewer noisy probes are made sharp: more would have to be made so too.
-        if (best.noise < 0.95 * noise_ && (!heavy || may_be_sharper())) {
+        if (best.noise < 0.85 * noise_ && may_be_sharper()) {
             sharpen(best.noise, picture, probe, work, run);
         } else if (best.probes > probes()) {
             // Half as many more, and then a claim: fewer than planned may do.
-            const std::size_t more = std::max(claim_outlook{}.least_probes, probes() + probes() / 2);
+            const std::size_t more = std::max(claim_outlook::least_probes, probes() + probes() / 2);
             grow(std::min(best.probes, more), picture, probe, work, run);
-        } else if (heavy && may_be_sharper()) {
+        } else if (sample_->heavy_tailed() && may_be_sharper()) {
             sharpen(noise_ / 2, picture, probe, work, run);
         } else {
             return false;
@@ -71,14 +70,16 @@ public:
     template <Probe P, Executor E>
     void look_at_last(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
         claiming_ = true;
-        if (noise_ > options_.audit.noise) { sharpen(options_.audit.noise, picture, probe, work, run); }
+        if (noise_ > options_.audit.noise && may_be_sharper()) {
+            sharpen(options_.audit.noise, picture, probe, work, run);
+        }
         while (sample_->heavy_tailed() && may_be_sharper()) { sharpen(noise_ / 2, picture, probe, work, run); }
         grow(std::max<std::size_t>(200, options_.audit.probes), picture, probe, work, run);
     }
 
     /// Whether a claim is likely enough to hold to be made.
     [[nodiscard]] bool worth_a_claim(double work) const {
-        if (!claiming_) { return false; }
+        if (!claiming_ || sample_->heavy_tailed()) { return false; }
         const claim_outlook known = outlook(work);
         return known.seen * known.decay.at(work) <
                1.1 * certifiable_error(known, {work, probes(), noise_}, known.z.front());
@@ -134,8 +135,10 @@ private:
     /// Gives the probes so many samples that their noise falls to `noise`.
     template <Probe P, Executor E>
     void sharpen(double noise, const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        const double before = noise_;
         sample_->sharpen(audit_ground<T>{picture, options_.audit}, square(noise_ / noise), probe, run);
         add(seen(work));
+        blunt_ = blunt_ || (!sample_->heavy_tailed() && noise_ > before * std::pow(noise / before, 0.25));
     }
 
     /// Draws more probes until there are `count`.
@@ -193,10 +196,11 @@ private:
         return known;
     }
 
-    /// Whether noise that seems heavy-tailed may be looked at with four times the samples.
+    /// Whether more samples may help: not without end where noise seems heavy-tailed, nor where it did not fall.
     [[nodiscard]] bool may_be_sharper() const {
+        if (blunt_) { return false; }
         const double most = options_.audit.patience / square(options_.audit.noise * options_.audit.target);
-        return 4 * static_cast<double>(sample_->samples_per_probe()) <= most;
+        return !sample_->heavy_tailed() || 4 * static_cast<double>(sample_->samples_per_probe()) <= most;
     }
 
     /// Whether the error seems to stay above the target, or to need much more work.
@@ -226,10 +230,11 @@ private:
     std::vector<measured_error> checks_for_fit_{};
     std::size_t distinct_{0};
     std::optional<audit_sample<T>> sample_{};
-    double noise_;     // of the probes, as a share of the target
-    double own_{0};    // mean size of that
-    double bound_{1};  // on the error, as the next claim would state it
-    double ratio_{1};  // standard deviation over mean of a probe's error
+    double noise_;       // of the probes, as a share of the target
+    double own_{0};      // mean size of that
+    double bound_{1};    // on the error, as the next claim would state it
+    double ratio_{1};    // standard deviation over mean of a probe's error
+    bool blunt_{false};  // whether more samples took off that less than a quarter of what they should, in octaves
     bool claiming_{false};
     std::size_t claims_{0};
 };
