@@ -181,6 +181,16 @@ TEST_CASE("render_until: probes whose noise never falls, or has no mean, come to
     CHECK(result.probe_samples < 100'000'000);
 }
 
+TEST_CASE("render_until: a picture without any error, looked at without noise, is certified at once") {
+    renderer render{0, 0, 0.5, 1};
+    for (double& x : render.f.truth) { x = 1; }
+    const auto exact = [](std::size_t, std::uint64_t) { return 1.0; };
+    const until_result result = render_until(render, exact, options(1));
+    CHECK(result.status == until_status::reached);
+    CHECK(result.work == 4);
+    CHECK(result.certificate.mean_error_bound == 0);
+}
+
 TEST_CASE("render_until: wrong settings are refused by name") {
     renderer render{0, 1, 0.5, 1};
     render_until_options o = options(1);

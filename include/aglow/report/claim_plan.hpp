@@ -61,7 +61,7 @@ struct claim_outlook {
 [[nodiscard]] inline double error_behind(const claim_outlook& known, const claim_plan& plan, double z, double bound) {
     const double seen = bound / (1 + reach_of(known, plan, z));
     const double own = known.own * plan.noise / known.noise;
-    return seen - own * own / (4 * seen);
+    return seen > 0 ? seen - own * own / (4 * seen) : 0;
 }
 
 /// The largest error of a picture that such probes certify more often than not.

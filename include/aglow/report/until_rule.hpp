@@ -192,7 +192,8 @@ private:
                             .least_noise = options_.least_noise};
         for (std::size_t i = 0; i < known.z.size(); ++i) { known.z[i] = normal_quantile(1 - miss(claims_ + 1 + i)); }
         const double behind = error_behind(known, {last.work, probes(), noise_}, known.z.front(), bound_);
-        known.seen = std::max(behind, 0.05 * bound_) / known.decay.at(last.work);
+        const double expected = known.decay.at(last.work);
+        known.seen = expected > 0 ? std::max(behind, 0.05 * bound_) / expected : 0;
         return known;
     }
 
