@@ -29,7 +29,7 @@
 #include "common/drawing.hpp"
 #include "common/light_set.hpp"
 #include "common/progress.hpp"
-#include "render/certify.hpp"
+#include "common/audited_film.hpp"
 #include "render/options.hpp"
 #include "render/phases.hpp"
 #include "render/report.hpp"

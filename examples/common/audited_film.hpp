@@ -13,6 +13,8 @@
 
 namespace host {
 
+using aglow::vec3;
+
 /// The numbers of a film at one moment.
 class audited_film {
 public:
