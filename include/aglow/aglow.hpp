@@ -55,6 +55,7 @@
 #include <aglow/containers/kd_search.hpp>
 #include <aglow/containers/kd_select.hpp>
 #include <aglow/containers/kd_tree.hpp>
+#include <aglow/containers/loose_cube.hpp>
 #include <aglow/containers/loose_octree.hpp>
 #include <aglow/containers/near_spheres.hpp>
 #include <aglow/containers/octree.hpp>

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <aglow/containers/loose_cube.hpp>
 #include <aglow/containers/sphere_search.hpp>
 #include <aglow/containers/stable_array.hpp>
 #include <aglow/core/vec.hpp>
@@ -54,10 +54,9 @@ public:
     void search(const Question& question, sphere_hits<T, D>& found) const {
         ask_list(outside_, question, found);
         const T reach = question.reach(largest_.load(std::memory_order_relaxed));
-        const place<const cell> everything{vec3<T>{0}, std::numeric_limits<T>::max(), nullptr};
-        for (unsigned near = octants_near(everything, question.point, reach); near != 0; near &= near - 1) {
+        for (unsigned near = everything.octants_near(question.point, reach); near != 0; near &= near - 1) {
             const root* const top = tops_[std::countr_zero(near)].load(std::memory_order_acquire);
-            if (top) { descend({top->middle, top->half, &top->inside}, question, found); }
+            if (top) { descend({top->box, &top->inside}, question, found); }
         }
     }
 
@@ -80,6 +79,7 @@ private:
     static constexpr unsigned lanes = 8;
     using block = sphere_block<T, lanes>;
     using word = std::atomic<std::uint32_t>;
+    using cube = detail::loose_cube<T>;
 
     // A block and what hangs on it: `next` is the word of the block before this one (always full), `length` counts both
     // and all before.
@@ -103,24 +103,15 @@ private:
 
     // Where a tree begins, and the cube it covers. Roots that were outgrown stay for the readers that look at them.
     struct root {
-        vec3<T> middle;
-        T half;
+        cube box;
         std::uint32_t number = 0;
         cell inside{};
     };
 
     template <typename Cell>
     struct place {
-        vec3<T> middle;
-        T half;
+        cube box;
         Cell* inside;
-
-        [[nodiscard]] place octant(unsigned i, Cell* child) const {
-            const T quarter = half / 2;
-            return {
-                middle + vec3<T>{i & 1u ? quarter : -quarter, i & 2u ? quarter : -quarter, i & 4u ? quarter : -quarter},
-                quarter, child};
-        }
     };
 
     static constexpr unsigned lane_bits = 4;
@@ -130,26 +121,25 @@ private:
     // A sphere that would double the root more often than this waits outside, if there is room.
     static constexpr int patient_doublings = 12;
     static constexpr std::uint32_t blocks_outside = 8;
-    // A cube is at least this wide beside its coordinates, which leaves its midpoint some bits to be exact.
-    static constexpr T finest = 8 * std::numeric_limits<T>::epsilon();
     static constexpr T farthest = std::numeric_limits<T>::max() / 32;
+    static constexpr cube everything{vec3<T>{0}, std::numeric_limits<T>::max()};
 
     // ---- writing ----------------------------------------------------------------------------------------------------
 
     // The cell that takes a new sphere.
     [[nodiscard]] cell& home(const vec3<T>& centre, T radius) {
-        const unsigned signs = octant_of(vec3<T>{0}, centre);
+        const unsigned signs = everything.octant_of(centre);
         const root* top = tops_[signs].load(std::memory_order_relaxed);
         if (belongs_outside(top, centre, radius)) { return outside_; }
         if (!top) { top = plant(signs, centre, radius); }
-        while (!holds(*top, centre, radius)) { top = grow(signs, *top); }
+        while (!top->box.holds(centre, radius)) { top = grow(signs, *top); }
         raise(largest_, radius);
-        place<cell> at{top->middle, top->half, &roots_[top->number].inside};
-        while (full(*at.inside, blocks_before_octants) && at.half / 2 >= radius && divisible(at)) {
+        place<cell> at{top->box, &roots_[top->number].inside};
+        while (full(*at.inside, blocks_before_octants) && at.box.half / 2 >= radius && at.box.divisible()) {
             brick& below = octants_of(*at.inside);
             raise(below.largest, radius);
-            const unsigned i = octant_of(at.middle, centre);
-            at = at.octant(i, &below.octants[i]);
+            const unsigned i = at.box.octant_of(centre);
+            at = {at.box.octant(i), &below.octants[i]};
         }
         return *at.inside;
     }
@@ -158,50 +148,27 @@ private:
         if (largest.load(std::memory_order_relaxed) < radius) { largest.store(radius, std::memory_order_relaxed); }
     }
 
-    [[nodiscard]] static bool divisible(const place<cell>& at) { return at.half / 2 >= max_abs(at.middle) * finest; }
-
-    [[nodiscard]] static unsigned octant_of(const vec3<T>& middle, const vec3<T>& p) {
-        return unsigned{p.x >= middle.x} | unsigned{p.y >= middle.y} << 1 | unsigned{p.z >= middle.z} << 2;
-    }
-
-    [[nodiscard]] static bool holds(const root& top, const vec3<T>& centre, T radius) {
-        const vec3<T> low = top.middle - top.half;
-        const vec3<T> high = top.middle + top.half;
-        return radius <= top.half && centre.x >= low.x && centre.x < high.x && centre.y >= low.y && centre.y < high.y &&
-               centre.z >= low.z && centre.z < high.z;
-    }
-
     [[nodiscard]] bool belongs_outside(const root* top, const vec3<T>& centre, T radius) const {
         if (is_far(centre)) { return true; }
         if (!top || full(outside_, blocks_outside)) { return false; }
-        return (max_abs(centre - top->middle) + radius) / top->half > T(1 << patient_doublings);
+        return (max_abs(centre - top->box.middle) + radius) / top->box.half > T(1 << patient_doublings);
     }
 
-    // The first root: a cube at least twice as wide as the sphere.
+    // The first root.
     const root* plant(unsigned signs, const vec3<T>& centre, T radius) {
-        const T least = std::max(radius, max_abs(centre) * finest);
-        const T half = std::ldexp(T(1), std::ilogb(least) + 2);
-        return publish(signs, roots_.append(cube_around(centre, half), half));
+        return publish(signs, roots_.append(cube::around_sphere(centre, radius)));
     }
 
     // A root twice as wide around the present one, which becomes an octant of it.
     const root* grow(unsigned signs, const root& old) {
-        const vec3<T> middle = cube_around(old.middle, 2 * old.half);
+        const cube wider = old.box.doubled();
         const std::uint32_t number = bricks_.append();
         brick& below = bricks_[number];
-        copy(old.inside, below.octants[octant_of(middle, old.middle)]);
+        copy(old.inside, below.octants[wider.octant_of(old.box.middle)]);
         below.largest.store(largest_.load(std::memory_order_relaxed), std::memory_order_relaxed);
-        const std::uint32_t made = roots_.append(middle, 2 * old.half);
+        const std::uint32_t made = roots_.append(wider);
         roots_[made].inside.children.store(number + 1, std::memory_order_release);
         return publish(signs, made);
-    }
-
-    // The midpoint of the cube around `p` on the grid of cubes that wide. Such cubes have no zero inside, and their
-    // midpoints are exact.
-    [[nodiscard]] static vec3<T> cube_around(const vec3<T>& p, T half) {
-        const T width = 2 * half;
-        return {(std::floor(p.x / width) + T(0.5)) * width, (std::floor(p.y / width) + T(0.5)) * width,
-                (std::floor(p.z / width) + T(0.5)) * width};
     }
 
     const root* publish(unsigned signs, std::uint32_t number) {
@@ -278,11 +245,10 @@ private:
             const std::uint32_t children = at.inside->children.load(std::memory_order_acquire);
             if (children == 0) { continue; }
             const brick& below = bricks_[children - 1];
-            for (unsigned near =
-                     octants_near(at, question.point, question.reach(below.largest.load(std::memory_order_relaxed)));
-                 near != 0; near &= near - 1) {
+            const T reach = question.reach(below.largest.load(std::memory_order_relaxed));
+            for (unsigned near = at.box.octants_near(question.point, reach); near != 0; near &= near - 1) {
                 const auto i = static_cast<unsigned>(std::countr_zero(near));
-                const place<const cell> child = at.octant(i, &below.octants[i]);
+                const place<const cell> child{at.box.octant(i), &below.octants[i]};
                 if (count < room) {
                     waiting[count++] = child;
                 } else {
@@ -290,21 +256,6 @@ private:
                 }
             }
         }
-    }
-
-    // One bit for each octant that may hold a centre within `reach` of `p` along every axis.
-    [[nodiscard]] static unsigned octants_near(const place<const cell>& at, const vec3<T>& p, T reach) {
-        return halves_near(at.middle.x, at.half, p.x, reach, 0x55u) &
-               halves_near(at.middle.y, at.half, p.y, reach, 0x33u) &
-               halves_near(at.middle.z, at.half, p.z, reach, 0x0fu);
-    }
-
-    [[nodiscard]] static unsigned halves_near(T middle, T half, T p, T reach, unsigned lower) {
-        const T low = p - reach;
-        const T high = p + reach;
-        const bool in_lower = low < middle && high >= middle - half;
-        const bool in_upper = high >= middle && low < middle + half;
-        return (in_lower ? lower : 0u) | (in_upper ? lower ^ 0xffu : 0u);
     }
 
     void swap(loose_octree& other) noexcept {
