@@ -59,6 +59,7 @@
 #include <aglow/containers/loose_octree.hpp>
 #include <aglow/containers/near_spheres.hpp>
 #include <aglow/containers/octree.hpp>
+#include <aglow/containers/packed_boxes.hpp>
 #include <aglow/containers/packed_spheres.hpp>
 #include <aglow/containers/sphere_order.hpp>
 #include <aglow/containers/sphere_search.hpp>

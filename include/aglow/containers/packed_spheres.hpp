@@ -15,6 +15,7 @@
 
 #include <aglow/containers/cell_directory.hpp>
 #include <aglow/containers/near_spheres.hpp>
+#include <aglow/containers/packed_boxes.hpp>
 #include <aglow/containers/sphere_order.hpp>
 #include <aglow/containers/sphere_search.hpp>
 #include <aglow/core/bounds.hpp>
@@ -49,8 +50,7 @@ public:
 
     template <bool D>
     void search(const covering_question<T>& question, sphere_hits<T, D>& found) const {
-        if (!is_listed()) { return search_trees(question, found); }
-        ask_lists(directory_.list_near(question.point), question, found);
+        search(question, is_listed() ? directory_.list_near(question.point) : 0, found);
     }
 
     /// Calls `found(i, items)` with the spheres that cover `point_at(i)`, for i below `count`, in order. Goes on with
@@ -103,12 +103,9 @@ private:
     using sphere = stored_sphere<T>;
     struct alignas(64) block : sphere_lanes<T, lanes> {};
 
-    // Boxes of sixteen children, blocks or nodes, from number `first` on; in steps of 1/255 of the box around them all.
+    // The boxes of sixteen children, blocks or nodes, from number `first` on.
     struct alignas(64) node {
-        vec3<T> origin;
-        vec3<T> steps_per_length;
-        std::array<std::uint8_t, lanes> low[3];
-        std::array<std::uint8_t, lanes> high[3];
+        detail::packed_boxes<T> boxes;
         std::uint32_t first;
         std::uint16_t used;  // a bit for each child there is
         bool of_blocks;
@@ -119,8 +116,10 @@ private:
     // Whether the lists of the directory are short enough to be asked for what covers a point.
     [[nodiscard]] bool is_listed() const { return directory_.longest() <= crowded; }
 
+    // `list` as the directory says, where it is asked.
     template <bool D>
-    void ask_lists(std::uint32_t list, const covering_question<T>& question, sphere_hits<T, D>& found) const {
+    void search(const covering_question<T>& question, std::uint32_t list, sphere_hits<T, D>& found) const {
+        if (!is_listed()) { return search_trees(question, found); }
         directory_.visit_lists(
             list, [&](const std::uint32_t* numbers, std::uint32_t count) { ask(numbers, count, question, found); });
     }
@@ -170,13 +169,6 @@ private:
         found.start();
         return true;
     }
-    void search(const covering_question<T>& question, std::uint32_t list, sphere_hits<T>& found) const {
-        if (is_listed()) {
-            ask_lists(list, question, found);
-        } else {
-            search_trees(question, found);
-        }
-    }
 
     // Finds the lists of points and asks for the blocks in them.
     void find_lists(std::span<const vec3<T>> points, std::array<std::uint32_t, in_step>& lists) const {
@@ -212,7 +204,7 @@ private:
         waiting[count++] = root;
         while (count != 0) {
             const node& at = nodes_[waiting[--count]];
-            std::uint32_t near = boxes_near(at, asked);
+            std::uint32_t near = at.boxes.near(asked) & at.used;
             if (at.of_blocks) {
                 std::uint32_t numbers[lanes];
                 std::uint32_t some = 0;
@@ -226,36 +218,6 @@ private:
 
     [[nodiscard]] static std::uint32_t first_lane(std::uint32_t mask) {
         return static_cast<std::uint32_t>(std::countr_zero(mask));
-    }
-
-    // One bit for each child whose box meets `asked`, and maybe for some that only nearly do. Rounding is no danger:
-    // the steps of a box and those of what is asked come from the same monotone function.
-    [[nodiscard]] static std::uint32_t boxes_near(const node& at, const bounds<T>& asked) {
-        const vec3<T> low = (asked.low - at.origin) * at.steps_per_length;
-        const vec3<T> high = (asked.high - at.origin) * at.steps_per_length;
-        const bool apart = !(low.x < 256 && low.y < 256 && low.z < 256 && high.x >= 0 && high.y >= 0 && high.z >= 0);
-        if (apart) { return 0; }
-        std::array<std::uint8_t, lanes> near;
-        const std::uint8_t low_x = step(low.x), low_y = step(low.y), low_z = step(low.z);
-        const std::uint8_t high_x = step(high.x), high_y = step(high.y), high_z = step(high.z);
-        for (unsigned i = 0; i < lanes; ++i) {
-            const unsigned x = unsigned{at.low[0][i] <= high_x} & unsigned{at.high[0][i] >= low_x};
-            const unsigned y = unsigned{at.low[1][i] <= high_y} & unsigned{at.high[1][i] >= low_y};
-            const unsigned z = unsigned{at.low[2][i] <= high_z} & unsigned{at.high[2][i] >= low_z};
-            near[i] = static_cast<std::uint8_t>(x & y & z);
-        }
-        return bits_of(near) & at.used;
-    }
-
-    [[nodiscard]] static std::uint8_t step(T x) {
-        return static_cast<std::uint8_t>(static_cast<int>(std::min(std::max(x, T(0)), T(255))));
-    }
-
-    // Gathers sixteen bytes of 0 or 1 into a mask.
-    [[nodiscard]] static std::uint32_t bits_of(const std::array<std::uint8_t, lanes>& bytes) {
-        const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(bytes);
-        constexpr std::uint64_t gather = 0x0102040810204080u;
-        return static_cast<std::uint32_t>(halves[0] * gather >> 56 | halves[1] * gather >> 56 << 8);
     }
 
     // ---- build ------------------------------------------------------------------------------------------------------
@@ -321,18 +283,8 @@ private:
         bounds<T> all;
         for (const bounds<T>& child : children) { all.add(child); }
         node& made = nodes_.emplace_back();
-        made.origin = all.low;
+        made.boxes.pack(children, all);
         made.used = static_cast<std::uint16_t>((1u << children.size()) - 1u);
-        const vec3<T> extent = all.extent();
-        for (int axis = 0; axis < 3; ++axis) {
-            made.steps_per_length[axis] = extent[axis] > 0 ? T(255) / extent[axis] : T(0);
-        }
-        for (int axis = 0; axis < 3; ++axis) {
-            for (std::size_t i = 0; i < children.size(); ++i) {
-                made.low[axis][i] = step((children[i].low[axis] - all.low[axis]) * made.steps_per_length[axis]);
-                made.high[axis][i] = step((children[i].high[axis] - all.low[axis]) * made.steps_per_length[axis]);
-            }
-        }
         return all;
     }
 
