@@ -1,18 +1,17 @@
 #include <aglow/estimators/record_pairs.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include <aglow/core/random.hpp>
 #include <aglow/core/simd.hpp>
 
 #include "support/catch.hpp"
+#include "support/floor_record.hpp"
 
 using namespace aglow;
 
@@ -20,30 +19,16 @@ namespace {
 
 using rgb = vec3<float>;
 
-template <typename S, record_features F>
-struct kept {
-    irradiance_record<S, float, F> record;
-};
-
-/// Records near the origin on a floor that is not quite flat, and what they err by.
+/// Records by number, and what they err by.
 template <typename S, record_features F>
 struct floor_records {
-    std::vector<kept<S, F>> records;
+    std::vector<support::floor_record<S, F>> records;
     std::vector<float> bends;
 
     floor_records(std::size_t count, random_sampler<float>& random) {
-        const auto any = [&] { return random.next_1d() * 2 - 1; };
         for (std::size_t i = 0; i < count; ++i) {
-            irradiance_estimate<S, float> e;
-            e.position = {any(), any(), 0.02f * any()};
-            e.axes = frame<float>{glm::normalize(rgb{0.1f * any(), 0.1f * any(), i % 9 == 0 ? -1 : 1})};
-            e.irradiance = S(1) * (0.1f + random.next_1d());
-            e.gradients.translation = {S(1) * any(), S(1) * any()};
-            e.gradients.rotation = {S(1) * any(), S(1) * any()};
-            e.relative_noise = random.next_1d();
-            e.rays = 100;
-            records.push_back({{e, {.radius = 0.3f + random.next_1d(), .ratio = 1 + random.next_1d()}}});
-            bends.push_back(random.next_1d());
+            records.push_back(support::random_floor_record<S, F>(random, i % 9 == 0 ? -1.f : 1.f));
+            bends.push_back(records.back().bend);
         }
     }
 };
@@ -59,7 +44,7 @@ std::vector<question> questions(std::size_t records, std::size_t most, random_sa
     std::vector<question> made;
     for (std::size_t i = 0; i < 700; ++i) {
         question q{{random.next_1d() - 0.5f, random.next_1d() - 0.5f, 0},
-                   glm::normalize(rgb{0.1f * random.next_1d(), -0.05f * random.next_1d(), 1}),
+                   support::random_floor_normal(random),
                    {},
                    i < 500 ? i * 7 % 13 : i % (most + 1)};
         if (i % 100 == 50) { q.point.y = std::numeric_limits<float>::quiet_NaN(); }
@@ -82,26 +67,18 @@ int different(error_metric metric) {
     const detail::lookup_limits<float> limits{record_lookup_options{}, metric};
     random_sampler<float> random{1};
     const floor_records<S, F> all{200, random};
-    detail::record_pairs<S, F, kept<S, F>> pairs{all.records.data(), all.bends.data(), limits};
+    detail::record_pairs<S, F, support::floor_record<S, F>> pairs{all.records.data(), all.bends.data(), limits};
     const auto asked = questions(all.records.size(), pairs.most, random);
     std::vector<irradiance_answer<S, float>> answers(asked.size());
     for (std::size_t i = 0; i < asked.size(); ++i) {
         pairs.add(asked[i].point, asked[i].normal, std::span{asked[i].near}.first(asked[i].count), answers[i]);
     }
     pairs.finish();
-    struct entry {
-        const irradiance_record<S, float, F>& record;
-        float bend;
-    };
     int wrong = 0, found = 0;
     for (std::size_t i = 0; i < asked.size(); ++i) {
         record_blend<S, float> blend{asked[i].point, asked[i].normal, limits};
         blend.add(
-            asked[i].count,
-            [&](std::size_t k) {
-                const std::uint32_t n = asked[i].near[k];
-                return entry{all.records[n].record, all.bends[n]};
-            },
+            asked[i].count, [&](std::size_t k) -> const auto& { return all.records[asked[i].near[k]]; },
             [](detail::verdict) {});
         wrong += !same(answers[i], blend.answer());
         found += static_cast<bool>(answers[i]);
@@ -130,7 +107,7 @@ TEST_CASE("record_pairs: a place gets the same answer whoever is asked about bef
     const detail::lookup_limits<float> limits{record_lookup_options{}, error_metric::hessian};
     random_sampler<float> random{1};
     const floor_records<rgb, record_features{}> all{200, random};
-    using pairs_of = detail::record_pairs<rgb, record_features{}, kept<rgb, record_features{}>>;
+    using pairs_of = detail::record_pairs<rgb, record_features{}, support::floor_record<rgb, record_features{}>>;
     pairs_of pairs{all.records.data(), all.bends.data(), limits};
     const auto asked = questions(all.records.size(), pairs.most, random);
     std::vector<irradiance_answer<rgb, float>> forth(asked.size()), back(asked.size());
