@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -198,7 +197,7 @@ private:
         for (std::size_t i = 0; i < room; ++i) {
             std::array<T, room> cosines;
             for (std::size_t j = 0; j < room; ++j) { cosines[j] = glm::dot(along[i], along[j]); }
-            std::nth_element(cosines.begin(), cosines.begin() + overlap, cosines.end(), std::greater<T>{});
+            std::nth_element(cosines.begin(), cosines.begin() + overlap, cosines.end(), [](T a, T b) { return a > b; });
             const T cosine = std::max(T(0), cosines[overlap]);
             const T sine2 = std::clamp(T(1.5) * (1 - cosine * cosine), T(1e-4), T(0.99));
             lobes.radius2[i] = sine2 * length2(lobes.centre(i) - point);

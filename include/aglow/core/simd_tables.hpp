@@ -18,10 +18,10 @@ inline constexpr std::array<std::uint8_t, 256> counts_of_8 = [] {
 /// Byte j of entry m is the j-th lane of the eight-bit mask m.
 inline constexpr std::array<std::uint64_t, 256> lanes_of_8 = [] {
     std::array<std::uint64_t, 256> table{};
-    for (std::uint32_t mask = 0; mask < 256; ++mask) {
-        for (std::uint64_t lane = 0, n = 0; lane < 8; ++lane) {
-            if ((mask >> lane & 1u) != 0) { table[mask] |= lane << (8 * n++); }
-        }
+    for (std::uint32_t mask = 1, lane = 0; mask < 256; ++mask) {
+        lane += mask >> (lane + 1);  // the last of the mask
+        const std::uint32_t others = mask ^ (1u << lane);
+        table[mask] = table[others] | std::uint64_t{lane} << (8 * counts_of_8[others]);
     }
     return table;
 }();
