@@ -24,12 +24,12 @@
 #include <aglow/report/render_until.hpp>
 #include <aglow/report/statement.hpp>
 
+#include "common/audited_film.hpp"
 #include "common/camera.hpp"
 #include "common/counted_scene.hpp"
 #include "common/drawing.hpp"
 #include "common/light_set.hpp"
 #include "common/progress.hpp"
-#include "common/audited_film.hpp"
 #include "render/options.hpp"
 #include "render/phases.hpp"
 #include "render/report.hpp"
