@@ -182,6 +182,25 @@ TEST_CASE("trace_photons: a scene that can store nothing ends soon and says so")
     nothing_in(black, support::no_light<S, float>{}, 32 * 256);
 }
 
+TEST_CASE("trace_photons: a map says what the host did wrong, not only that it came out thin") {
+    const photon_options options{.direct = 1000, .pilot_paths = 256};
+    const auto why_of = [&](const auto& scene, const auto& light) {
+        return trace_photons(scene, light, options).direct.why;
+    };
+    CHECK(why_of(sphere(0.5f), lamp) == "full");
+    const std::string dark = "empty, nothing landed in 8192 paths, the lights send out no power";
+    CHECK(why_of(sphere(0.5f), support::no_light<S, float>{}) == dark);
+    const auto has = [](const std::string& why, const std::string& words) {
+        return why.find("full, ") == 0 && why.find(" particles dropped: " + words) != std::string::npos;
+    };
+    using support::flaw;
+    CHECK(has(why_of(support::flawed_scene{sphere(0.5f), flaw::long_normal}, lamp), "normals that are not unit"));
+    CHECK(has(why_of(support::flawed_scene{sphere(0.5f), flaw::nan_position}, lamp),
+              "hits at no place or behind the ray"));
+    CHECK(has(why_of(sphere(0.5f), support::flawed_bulb{lamp, support::not_a_number}),
+              "particles whose power is no light"));
+}
+
 TEST_CASE("trace_photons: black walls absorb all, and nothing is divided by nothing") {
     auto scene = sphere(0);
     scene.lobes = lobe_set::all;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include <aglow/algorithms/host_faults.hpp>
 #include <aglow/concepts/spectrum.hpp>
@@ -53,6 +54,19 @@ struct energy_ledger {
         return *this;
     }
 };
+
+/// What the books say of light that a host never gave or gave wrongly, as a clause for people that begins with a comma;
+/// empty where all is well.
+template <Spectrum S>
+[[nodiscard]] std::string complaint(const energy_ledger<S>& ledger) {
+    if (ledger.dropped > 0) {
+        const auto most = std::max_element(ledger.faults.begin(), ledger.faults.end());
+        const auto kind = static_cast<host_fault>(most - ledger.faults.begin());
+        return ", " + std::to_string(ledger.dropped) + " of " + std::to_string(ledger.emitted) +
+               " particles dropped: " + words(kind);
+    }
+    return ledger.emitted > 0 && is_black(ledger.power_emitted) ? ", the lights send out no power" : "";
+}
 
 /// The books of paths `first` to `last`, kept by `walk(path, ledger)`: those of few at a time are added to the others,
 /// since a long sum of floats loses what is small beside it.

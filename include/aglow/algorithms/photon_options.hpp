@@ -52,7 +52,8 @@ struct traced_map : photon_map<S, T> {
     map_status status{map_status::left_out};
     std::size_t wanted{0};
     std::size_t paths{0};  ///< emitted paths that could have stored here: what its power was divided by
-    std::string why{};     ///< one clause for people, such as "left out, no specular surface"
+    std::string why{};     ///< one clause for people, such as "left out, no specular surface"; also of what hosts did
+                           ///< wrong: "full, 73 of 9000 particles dropped: normals that are not unit"
     double common{0};      ///< standard error of the whole map's flux over the flux: what no estimate can average away
 };
 

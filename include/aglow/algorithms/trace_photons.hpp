@@ -66,10 +66,10 @@ public:
         std::vector<energy_ledger<S>> ledgers;
         for (const auto& block : blocks) { ledgers.push_back(block.ledger); }
         result.ledger = joined<S>(ledgers);
-        finish(result.direct, blocks, photon_history::direct);
-        finish(result.caustic, blocks, photon_history::caustic);
-        finish(result.indirect, blocks, photon_history::indirect);
-        finish(result.reflected, blocks, photon_history::reflected);
+        finish(result.direct, blocks, photon_history::direct, complaint(result.ledger));
+        finish(result.caustic, blocks, photon_history::caustic, complaint(result.ledger));
+        finish(result.indirect, blocks, photon_history::indirect, complaint(result.ledger));
+        finish(result.reflected, blocks, photon_history::reflected, complaint(result.ledger));
         return result;
     }
 
@@ -207,7 +207,7 @@ private:
             {hit.position, {power, packed_direction<std::int16_t>{wi}, packed_direction<std::int16_t>{side}}});
     }
 
-    void finish(traced_map<S, T>& map, const blocks_type& blocks, photon_history kind) {
+    void finish(traced_map<S, T>& map, const blocks_type& blocks, photon_history kind, const std::string& wrong) {
         const std::size_t k = index(kind);
         std::size_t count = 0;
         double flux = 0;
@@ -231,14 +231,14 @@ private:
         }
         map.wanted = wanted_[k];
         map.why = why_[k];
-        describe(map);
+        describe(map, wrong);
     }
 
-    void describe(traced_map<S, T>& map) const {
+    void describe(traced_map<S, T>& map, const std::string& wrong) const {
         if (map.wanted == 0) { return; }
         const auto tell = [&](map_status status, std::string why) {
             map.status = status;
-            map.why = std::move(why);
+            map.why = std::move(why) + wrong;
         };
         const std::string paths = std::to_string(map.paths) + " paths";
         if (map.empty()) { return tell(map_status::empty, "empty, nothing landed in " + paths); }
