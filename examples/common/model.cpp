@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <string_view>
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 
 #include <aglow/core/bounds.hpp>
 
@@ -219,9 +224,51 @@ void add_materials(model& into, const aiScene& scene, const std::filesystem::pat
     }
 }
 
+/// Keeps what assimp says that it did not find, for as long as it lives: material files above all, without which a
+/// model comes out gray.
+class listener {
+public:
+    explicit listener(std::vector<std::string>& notes) {
+        Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+        Assimp::DefaultLogger::get()->attachStream(new stream{notes}, Assimp::Logger::Err | Assimp::Logger::Warn);
+    }
+    listener(const listener&) = delete;
+    listener& operator=(const listener&) = delete;
+    ~listener() { Assimp::DefaultLogger::kill(); }  // and the stream with it
+
+private:
+    struct stream : Assimp::LogStream {
+        explicit stream(std::vector<std::string>& to) : notes{to} {}
+        void write(const char* said) override {
+            const std::string_view line{said};
+            const std::size_t begin = line.find("nable to locate material file");
+            if (begin == std::string_view::npos) { return; }
+            notes.push_back("U" + std::string{line.substr(begin, line.find('\n') - begin)});
+        }
+        std::vector<std::string>& notes;
+    };
+};
+
+/// Brighter glTF lamps than their factor says: an extension that assimp before 5.3 passes over in silence.
+void note_unread_strength(model& into, const aiScene& scene, const std::filesystem::path& file) {
+    const auto read = [](const aiMaterial* m) {
+        float strength = 1;
+        return m->Get(AI_MATKEY_EMISSIVE_INTENSITY, strength) == aiReturn_SUCCESS;
+    };
+    constexpr std::string_view extension = "KHR_materials_emissive_strength";
+    if (std::any_of(scene.mMaterials, scene.mMaterials + scene.mNumMaterials, read)) { return; }
+    std::ifstream bytes{file, std::ios::binary};
+    const std::string text{std::istreambuf_iterator<char>{bytes}, {}};
+    if (text.find(extension) == std::string::npos) { return; }
+    into.notes.push_back(std::string{extension} +
+                         ": not read by this version of assimp, lamps are as their factor says");
+}
+
 }  // namespace
 
 model read_model(const std::filesystem::path& file) {
+    model made;
+    const listener ears{made.notes};
     Assimp::Importer importer;
     // Points and lines are no surfaces.
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -234,11 +281,11 @@ model read_model(const std::filesystem::path& file) {
         const std::string why = importer.GetErrorString();
         throw std::runtime_error("cannot read " + file.string() + ": " + why.substr(0, why.find('\n')));
     }
-    model made;
     add_materials(made, *scene, file.parent_path());
     add_node(made, *scene, *scene->mRootNode, aiMatrix4x4{});
     if (made.meshes.empty()) { throw std::runtime_error("cannot read " + file.string() + ": no triangles in it"); }
     add_lights(made, *scene);
+    note_unread_strength(made, *scene, file);
     made.camera = first_camera(*scene);
     return made;
 }

@@ -284,6 +284,35 @@ TEST_CASE("model: a PNG colours the matte part, upright, and a missing one is no
     CHECK(glm::distance(matte(0.25f, -0.5f, 0.25f), {0.5f, 0.25f, 0.125f}) < 1e-6f);
 }
 
+TEST_CASE("model: a material file that is missing is told by name") {
+    const files dir;
+    const host::model m = host::read_model(dir.write("m.obj", "mtllib gone.mtl\n" + square(0) + quad(1, "lost")));
+    REQUIRE_FALSE(m.notes.empty());
+    CHECK(m.notes[0] == "Unable to locate material file gone.mtl");
+    CHECK(host::read_model(dir.write("plain.obj", square(0) + "f 1 2 3 4\n")).notes.empty());
+}
+
+TEST_CASE("model: a lamp's strength is read, or told to be left out") {
+    const files dir;
+    // A triangle within the file: three corners, one after another.
+    const std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"extensionsUsed":["KHR_materials_emissive_strength"],
+"materials":[{"emissiveFactor":[1,1,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":20}}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+    const host::model m = host::read_model(dir.write("m.gltf", text));
+    REQUIRE(m.meshes.size() == 1);
+    const float radiance = m.materials[m.meshes[0].material].radiance.x;
+    if (m.notes.empty()) {
+        CHECK(radiance == 20);
+    } else {
+        CHECK(radiance == 1);
+        CHECK(m.notes[0].find("KHR_materials_emissive_strength") == 0);
+    }
+}
+
 TEST_CASE("model: colours of corners run over the face") {
     const files dir;
     const std::string text = "v 0 0 0 1 0 0\nv 0 0 1 1 0 0\nv 1 0 1 0 0 1\nv 1 0 0 0 0 1\nf 1 2 3 4\n";
