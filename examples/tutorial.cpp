@@ -145,6 +145,14 @@ int main() {
     film.expose(eye, classical, {.samples = 4}, crew);
     tell("radiance, classical", film.radiance(3, 20), wall);
 
+    // Did the scene keep its word? What it answers wrongly is cut out of the light, and counted by kind.
+    aglow::host_faults faults;
+    aglow::film<float> trial{32, 32};
+    trial.expose(eye, aglow::path_tracer{room, light, {.faults = &faults}}, {.samples = 4}, crew);
+    std::printf("%llu faults of the scene\n%s", static_cast<unsigned long long>(faults.count()),
+                aglow::statement(faults).c_str());
+    all_right = all_right && faults.count() == 0;
+
     // How good is it? A few hundred pixels are looked at afresh by an unbiased integrator.
     std::vector<float> pixels;
     for (std::size_t i = 0; i < 32 * 32; ++i) { pixels.push_back(film.radiance(i % 32, i / 32)); }

@@ -15,7 +15,8 @@
 
 namespace aglow {
 
-/// How a picture is looked over.
+/// How a picture is looked over. The size is that of the film whose points `eye` takes: of a larger film, what lies
+/// beyond finds no records, and each of its samples gathers afresh, slowly.
 struct view_options {
     std::size_t width{256};
     std::size_t height{256};

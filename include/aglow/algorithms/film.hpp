@@ -50,7 +50,8 @@ public:
 
     /// Samples that a pixel has taken; the next exposure goes on from there.
     [[nodiscard]] std::uint32_t samples() const { return samples_; }
-    /// Samples left out because their value was NaN, infinite or negative.
+    /// Samples left out because their value was NaN, infinite or negative. What is wrong in a host's answers is cut out
+    /// of a path before that, and counted in `path_options::faults`.
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
     /// Mean radiance of a pixel, W/(m² sr).

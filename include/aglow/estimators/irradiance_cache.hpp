@@ -78,7 +78,8 @@ public:
     explicit irradiance_cache(T scene_radius, const irradiance_cache_options& options = {})
         : options_{options}, scene_radius_{scene_radius}, limits_{options.lookup, options.reach.metric} {
         detail::check(options);
-        detail::expect_setting(is_finite(scene_radius) && scene_radius > 0, "scene radius",
+        detail::expect_setting(is_finite(scene_radius) && scene_radius > 0,
+                               "scene radius (half the diagonal of the scene's bounds)",
                                static_cast<double>(scene_radius));
         shortest_ = static_cast<T>(options.reach.minimum_radius) * scene_radius;
         longest_ = static_cast<T>(options.reach.maximum_radius) * scene_radius;
