@@ -260,11 +260,15 @@ int main(int argc, char** argv) {
     std::vector<std::string> chosen;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
+        if (argument == "--help" || argument == "-h") {
+            help(what.how);
+            return 0;
+        }
         if (argument.rfind("--", 0) != 0) {
             chosen.push_back(argument);
         } else if (!take(argument, what)) {
-            help(what.how);
-            return argument == "--help" ? 0 : 2;
+            std::fprintf(stderr, "calibration: no option %s; --help tells of those there are\n", argument.c_str());
+            return 2;
         }
     }
     if (!chosen.empty()) { what.scenes = chosen; }

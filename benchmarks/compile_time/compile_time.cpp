@@ -7,8 +7,16 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
+
+#include "common/command_line.hpp"
 
 namespace {
+
+constexpr std::string_view usage =
+    "usage: compile_time [RUNS]\n"
+    "\n"
+    "User seconds of the compiler for the whole library and for the smallest program, the least of so many runs (5).\n";
 
 double user_seconds() {
     rusage used{};
@@ -16,9 +24,9 @@ double user_seconds() {
     return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
 }
 
-double least(const std::string& command, int runs) {
+double least(const std::string& command, std::size_t runs) {
     double best = 1e9;
-    for (int i = 0; i < runs; ++i) {
+    for (std::size_t i = 0; i < runs; ++i) {
         const double before = user_seconds();
         if (std::system(command.c_str()) != 0) { std::exit(1); }
         best = std::min(best, user_seconds() - before);
@@ -26,10 +34,12 @@ double least(const std::string& command, int runs) {
     return best;
 }
 
-}  // namespace
-
-int main(int count, char** arguments) {
-    const int runs = count > 1 ? std::max(1, std::atoi(arguments[1])) : 5;
+int run(command_line::words& asked) {
+    std::size_t runs = 5;
+    while (asked.next()) {
+        if (asked.is_option()) { asked.refuse(); }
+        runs = command_line::whole("RUNS", asked.word(), 1, 1000);
+    }
     const auto folder = std::filesystem::temp_directory_path();
     const auto write = [&](const char* name, const char* text) {
         std::ofstream{folder / name} << text;
@@ -41,4 +51,9 @@ int main(int count, char** arguments) {
     std::printf("nothing at -O0          %.2f s\n", least(compile + "-O0 " + nothing, runs));
     std::printf("aglow.hpp at -O0        %.2f s, to stay below 1\n", least(compile + "-O0 " + whole, runs));
     std::printf("minimal.cpp at -O2      %.2f s\n", least(compile + "-O2 " AGLOW_ROOT "/examples/minimal.cpp", runs));
+    return 0;
 }
+
+}  // namespace
+
+int main(int count, char** arguments) { return command_line::run(count, arguments, usage, run); }

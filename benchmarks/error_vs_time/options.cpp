@@ -5,6 +5,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "common/command_line.hpp"
+
 namespace error_vs_time {
 
 const std::string_view usage =
@@ -27,17 +29,6 @@ const std::string_view usage =
     "goes on where it was; steps of the same build, machine, size and seeds in DIR are not rendered again.\n";
 
 namespace {
-
-/// A whole number in [least, most].
-std::size_t whole(std::string_view option, std::string_view text, std::size_t least, std::size_t most) {
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || end != text.data() + text.size() || number < least || number > most) {
-        throw std::invalid_argument(std::string{option} + " wants a whole number from " + std::to_string(least) +
-                                    " to " + std::to_string(most) + ", not \"" + std::string{text} + '"');
-    }
-    return number;
-}
 
 std::vector<double> errors(std::string_view option, std::string_view text) {
     std::vector<double> found;
@@ -97,10 +88,10 @@ options parse(std::span<const std::string_view> words) {
         } else if (word == "--scene") {
             add_once(named, value());
         } else if (word == "--size") {
-            result.size = whole(word, value(), 8, 4096);
+            result.size = command_line::whole(word, value(), 8, 4096);
             size_named = true;
         } else if (word == "--seeds") {
-            result.seeds = whole(word, value(), 2, 1000);
+            result.seeds = command_line::whole(word, value(), 2, 1000);
             seeds_named = true;
         } else if (word == "--relmse") {
             result.relmse_targets = errors(word, value());

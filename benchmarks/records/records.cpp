@@ -1,21 +1,19 @@
 // How far off is a cache of so many records, by what sets their reach? The set-up of Schwarzhaupt, Jensen & Jarosz
 // 2012, figure 1: the Cornell box, one bounce of indirect light, 1,700 records of 4096 rays each. They give an RMSE of
 // 0.0901 for the split sphere, 0.0290 for the bounded one with gradients, 0.0071 for the occlusion Hessian.
-//
-//     records [RECORDS] [RAYS] | --smoke
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <aglow/algorithms/cache_integrators.hpp>
 
 #include "common/camera.hpp"
+#include "common/command_line.hpp"
 #include "common/light_set.hpp"
 #include "common/scenes/cornell.hpp"
 
@@ -25,6 +23,15 @@ using T = float;
 using S = aglow::vec3<float>;
 using world = host::scene<T>;
 using tracer = aglow::path_tracer<world, host::light_set<T>>;
+
+constexpr std::string_view usage =
+    "usage: records [RECORDS] [RAYS] | --smoke\n"
+    "\n"
+    "The error of an irradiance cache of so many records (1700), of so many rays each (4096), by what sets their "
+    "reach.\n"
+    "\n"
+    "  --smoke   only tries whether everything works\n"
+    "  --help    this\n";
 
 struct effort {
     std::size_t records{1700};
@@ -159,14 +166,25 @@ int benchmark(const effort& e) {
     return 0;
 }
 
+effort effort_of(command_line::words& asked) {
+    effort e;
+    for (int place = 0; asked.next();) {
+        if (asked.is("--smoke")) {
+            e = {.records = 60, .rays = 32, .picture = 32, .judged = 8};
+        } else if (asked.is_option() || place == 2) {
+            asked.refuse();
+        } else if (place++ == 0) {
+            e.records = command_line::whole("RECORDS", asked.word(), 20, 1'000'000);
+        } else {
+            e.rays = static_cast<std::uint32_t>(command_line::whole("RAYS", asked.word(), 16, 1'000'000));
+        }
+    }
+    return e;
+}
+
 }  // namespace
 
-int main(int argc, char** argv) {
-    if (argc == 2 && std::strcmp(argv[1], "--smoke") == 0) {
-        return benchmark({.records = 60, .rays = 32, .picture = 32, .judged = 8});
-    }
-    effort e;
-    if (argc > 1) { e.records = static_cast<std::size_t>(std::max(20, std::atoi(argv[1]))); }
-    if (argc > 2) { e.rays = static_cast<std::uint32_t>(std::max(16, std::atoi(argv[2]))); }
-    return benchmark(e);
+int main(int count, char** arguments) {
+    return command_line::run(count, arguments, usage,
+                             [](command_line::words& asked) { return benchmark(effort_of(asked)); });
 }

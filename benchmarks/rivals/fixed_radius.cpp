@@ -1,8 +1,6 @@
 // Would a grid serve progressive passes better than the kd-tree? Both are built for one pass of photons and asked for
 // all within its radius; CPU time of building and asking together, medians; a sample is compared with brute force.
 //
-//     rivals_fixed_radius [--smoke]
-//
 // So far a grid gains at most a quarter, where photons lie evenly and few are within, and takes twice as long in
 // crowds.
 #include <algorithm>
@@ -11,12 +9,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
-#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <aglow/containers/kd_tree.hpp>
 
+#include "common/command_line.hpp"
 #include "hash_grid.hpp"
 #include "kd_tree_sets.hpp"
 #include "kd_tree_threads.hpp"
@@ -24,6 +23,15 @@
 namespace {
 
 using namespace rivals;
+
+constexpr std::string_view usage =
+    "usage: rivals_fixed_radius [--smoke]\n"
+    "\n"
+    "A grid for one radius beside the kd-tree, built for one pass of photons and asked for all within its radius.\n"
+    "\n"
+    "  --smoke   only tries whether everything works\n"
+    "  --help    this\n";
+
 using points = std::vector<point>;
 /// An index and a squared distance, in the order of indices.
 using answers = std::vector<std::pair<std::uint32_t, float>>;
@@ -127,10 +135,12 @@ bool compare(char set, std::size_t count, bool coherent, std::size_t asked, int 
     return right;
 }
 
-}  // namespace
-
-int main(int count, char** words) {
-    const bool smoke = count > 1 && std::string{words[1]} == "--smoke";
+int run(command_line::words& asked) {
+    bool smoke = false;
+    while (asked.next()) {
+        if (!asked.is("--smoke")) { asked.refuse(); }
+        smoke = true;
+    }
     bool right = true;
     std::printf("set, photons, order, hits; building + asking; how many times as fast the grid is\n");
     for (const std::size_t photons : {std::size_t{100'000}, std::size_t{1'000'000}}) {
@@ -145,3 +155,7 @@ int main(int count, char** words) {
     std::printf("%s (checksum %g)\n", right ? "every compared answer is right" : "WRONG ANSWERS", sum_of_all);
     return right ? 0 : 1;
 }
+
+}  // namespace
+
+int main(int count, char** arguments) { return command_line::run(count, arguments, usage, run); }

@@ -1,8 +1,6 @@
 // rivals_irradiance_cache: whole lookups, from a place and its normal to blended irradiance, by our caches and by the
 // textbooks' octree; and irradiance points, nearest first, with the test of normals.
 //
-//     rivals_irradiance_cache [--smoke] [--repeats N]
-//
 // Walls of a unit room; reaches within a factor of two, six over each place. CPU seconds of one thread, medians of
 // interleaved repeats. `random`: places anywhere; `coherent`: tiles of 128 neighbours. Before any time counts the
 // answers of both indices are compared.
@@ -18,18 +16,17 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <iostream>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <aglow/estimators/irradiance_cache.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
 
+#include "common/command_line.hpp"
 #include "kd_tree_sets.hpp"
 #include "textbook_octree.hpp"
 
@@ -40,6 +37,15 @@ using rivals::point;
 using rgb = aglow::vec3<float>;
 using cache = aglow::irradiance_cache<rgb, float>;
 using answer = aglow::irradiance_answer<rgb, float>;
+
+constexpr std::string_view usage =
+    "usage: rivals_irradiance_cache [options]\n"
+    "\n"
+    "Whole lookups of irradiance caches and of irradiance points beside those in the textbooks' octree.\n"
+    "\n"
+    "  --repeats N   turns whose median counts (5)\n"
+    "  --smoke       only tries whether everything works\n"
+    "  --help        this\n";
 
 constexpr float scene_radius = 0.87f;
 
@@ -212,7 +218,7 @@ struct questions {
     }
 };
 
-void compare(std::size_t count, std::size_t asked, int repeats) {
+void compare(std::size_t count, std::size_t asked, std::size_t repeats) {
     cache growing{scene_radius, options()};
     const auto radius = static_cast<float>(std::sqrt(36 / (3.1416 * static_cast<double>(count))));
     dice random_reach{5};
@@ -238,7 +244,7 @@ void compare(std::size_t count, std::size_t asked, int repeats) {
     };
     const auto eight = [&](const place& q) { return book.lookup_eight(q.position, q.normal).irradiance.x; };
     times each_one[5];
-    for (int turn = 0; turn < repeats; ++turn) {
+    for (std::size_t turn = 0; turn < repeats; ++turn) {
         about.ask(each_one[0], each(of(book)));
         about.ask(each_one[1], each(eight));
         about.ask(each_one[2], each(of(growing)));
@@ -260,7 +266,7 @@ void compare(std::size_t count, std::size_t asked, int repeats) {
     std::fflush(stdout);
 }
 
-void read_points(std::size_t count, std::size_t asked, int repeats) {
+void read_points(std::size_t count, std::size_t asked, std::size_t repeats) {
     std::vector<aglow::irradiance_point<rgb, float>> points;
     for (const place& p : on_walls(count, 1)) {
         points.push_back({.position = p.position, .normal = p.normal, .irradiance = rgb{1}});
@@ -274,7 +280,7 @@ void read_points(std::size_t count, std::size_t asked, int repeats) {
     };
     const auto in_front = [&](const place& q) { return read(q, 1); };
     const auto behind = [&](const place& q) { return read(q, -1); };
-    for (int turn = 0; turn < repeats; ++turn) {
+    for (std::size_t turn = 0; turn < repeats; ++turn) {
         about.ask(lit, each(in_front));
         dark.random.push_back(time_of(about.random, each(behind)));
     }
@@ -285,32 +291,29 @@ void read_points(std::size_t count, std::size_t asked, int repeats) {
     std::fflush(stdout);
 }
 
+int run(command_line::words& asked) {
+    bool smoke = false;
+    std::size_t repeats = 5;
+    while (asked.next()) {
+        if (asked.is("--smoke")) {
+            smoke = true;
+            repeats = 1;
+        } else if (asked.is("--repeats")) {
+            repeats = asked.number(1, 1000);
+        } else {
+            asked.refuse();
+        }
+    }
+    const std::size_t lookups = smoke ? 2'000 : 65'536;
+    for (const std::size_t n : {1'000u, 10'000u, 100'000u, 1'000'000u}) {
+        if (!smoke || n == 1'000) { compare(n, lookups, repeats); }
+    }
+    for (const std::size_t n : {1'000u, 125'000u, 1'250'000u}) {
+        if (!smoke || n == 1'000) { read_points(n, lookups, repeats); }
+    }
+    return 0;
+}
+
 }  // namespace
 
-int main(int count, char** words) {
-    try {
-        bool smoke = false;
-        int repeats = 5;
-        for (int i = 1; i < count; ++i) {
-            const std::string word = words[i];
-            if (word == "--smoke") {
-                smoke = true;
-                repeats = 1;
-            } else if (word == "--repeats" && i + 1 < count) {
-                repeats = std::max(1, std::atoi(words[++i]));
-            } else {
-                throw std::invalid_argument("rivals_irradiance_cache [--smoke] [--repeats N]");
-            }
-        }
-        const std::size_t asked = smoke ? 2'000 : 65'536;
-        for (const std::size_t n : {1'000u, 10'000u, 100'000u, 1'000'000u}) {
-            if (!smoke || n == 1'000) { compare(n, asked, repeats); }
-        }
-        for (const std::size_t n : {1'000u, 125'000u, 1'250'000u}) {
-            if (!smoke || n == 1'000) { read_points(n, asked, repeats); }
-        }
-    } catch (const std::exception& problem) {
-        std::cerr << problem.what() << '\n';
-        return 2;
-    }
-}
+int main(int count, char** arguments) { return command_line::run(count, arguments, usage, run); }

@@ -1,35 +1,46 @@
 // How much faster is our kd-tree than those in use? All contenders answer the same questions in one process, in turn;
 // CPU time, medians; every answer of a sample is compared with brute force.
-//
-//     rivals [--smoke] [--count 1000000] [--queries 20000] [--repeats 5] [--sets ABRCD] [--csv rivals.csv]
-//            [--only build,random,coherent] [--append]
-//
-// With --append a long contest can be held in parts: the rows are added to those that the file has.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <aglow/containers/kd_tree.hpp>
 
+#include "common/command_line.hpp"
 #include "kd_tree_contender.hpp"
 #include "kd_tree_threads.hpp"
 
 namespace rivals {
 namespace {
 
+constexpr std::string_view usage =
+    "usage: rivals [options]\n"
+    "\n"
+    "The kd-tree beside those of nanoflann, FLANN and CGAL: building, nearest photons and photons within a radius.\n"
+    "\n"
+    "  --sets LETTERS   sets of photons (ABRCD)\n"
+    "  --count N        photons of each (1000000)\n"
+    "  --queries N      questions (20000)\n"
+    "  --repeats N      turns whose median counts (5)\n"
+    "  --only PARTS     of build,random,coherent\n"
+    "  --csv FILE       writes the table as well, for rivals_plot\n"
+    "  --append         adds its rows to those that FILE has: a long contest can be held in parts\n"
+    "  --smoke          only tries whether everything works\n"
+    "  --help           this\n";
+
 struct settings {
     std::size_t count = 1'000'000;
     std::size_t queries = 20'000;
-    int repeats = 5;
+    std::size_t repeats = 5;
     std::string sets = "ABRCD";
     std::string csv;
     std::string only = "build,random,coherent";
@@ -117,8 +128,8 @@ private:
     void build(char set, const std::vector<photon>& photons) {
         row builds{set, "build", "", {}};
         std::map<std::string, std::vector<double>> seconds;
-        const int rounds = settings_.wants("build") ? (settings_.repeats + 1) / 2 : 1;
-        for (int i = 0; i < rounds; ++i) {
+        const std::size_t rounds = settings_.wants("build") ? (settings_.repeats + 1) / 2 : 1;
+        for (std::size_t i = 0; i < rounds; ++i) {
             for (auto& c : all_) {
                 if (c->borrows()) { continue; }
                 const double start = cpu_seconds();
@@ -158,7 +169,7 @@ private:
 
     void measure(row what, std::size_t queries, const std::function<double(contender&)>& ask) {
         std::map<std::string, std::vector<double>> seconds;
-        for (int i = 0; i < settings_.repeats; ++i) {
+        for (std::size_t i = 0; i < settings_.repeats; ++i) {
             for (auto& c : all_) {
                 if (what.order == "random" && c->name() == "aglow, hinted") { continue; }
                 const double start = cpu_seconds();
@@ -250,7 +261,7 @@ private:
 
     void write_csv() const {
         std::FILE* file = std::fopen(settings_.csv.c_str(), settings_.append ? "a" : "w");
-        if (file == nullptr) { throw std::runtime_error("rivals: cannot write " + settings_.csv); }
+        if (file == nullptr) { throw std::runtime_error("cannot write " + settings_.csv); }
         if (std::ftell(file) == 0) { std::fprintf(file, "set,count,question,order,contender,seconds\n"); }
         for (const row& r : rows_) {
             for (auto& [name, seconds] : r.seconds) {
@@ -269,36 +280,30 @@ private:
     double sum_{0};
 };
 
-settings parse(int count, char** words) {
+settings parse(command_line::words& asked) {
+    constexpr std::size_t most = 100'000'000;
     settings s;
-    for (int i = 1; i < count; ++i) {
-        const std::string word = words[i];
-        if (word == "--smoke") {
+    while (asked.next()) {
+        if (asked.is("--smoke")) {
             s.count = 3000;
             s.queries = 256;
             s.repeats = 1;
-            continue;
-        }
-        if (word == "--append") {
+        } else if (asked.is("--append")) {
             s.append = true;
-            continue;
-        }
-        if (i + 1 == count) { throw std::invalid_argument("rivals: no value for " + word); }
-        const std::string value = words[++i];
-        if (word == "--count") {
-            s.count = std::stoul(value);
-        } else if (word == "--queries") {
-            s.queries = std::stoul(value);
-        } else if (word == "--repeats") {
-            s.repeats = std::stoi(value);
-        } else if (word == "--sets") {
-            s.sets = value;
-        } else if (word == "--csv") {
-            s.csv = value;
-        } else if (word == "--only") {
-            s.only = value;
+        } else if (asked.is("--count")) {
+            s.count = asked.number(1, most);
+        } else if (asked.is("--queries")) {
+            s.queries = asked.number(1, most);
+        } else if (asked.is("--repeats")) {
+            s.repeats = asked.number(1, 1000);
+        } else if (asked.is("--sets")) {
+            s.sets = asked.value();
+        } else if (asked.is("--csv")) {
+            s.csv = asked.value();
+        } else if (asked.is("--only")) {
+            s.only = asked.value();
         } else {
-            throw std::invalid_argument("rivals: unknown option " + word);
+            asked.refuse();
         }
     }
     return s;
@@ -307,11 +312,8 @@ settings parse(int count, char** words) {
 }  // namespace
 }  // namespace rivals
 
-int main(int count, char** words) {
-    try {
-        return rivals::contest{rivals::parse(count, words)}.run() ? 0 : 1;
-    } catch (const std::exception& trouble) {
-        std::fprintf(stderr, "%s\n", trouble.what());
-        return 2;
-    }
+int main(int count, char** arguments) {
+    return command_line::run(count, arguments, rivals::usage, [](command_line::words& asked) {
+        return rivals::contest{rivals::parse(asked)}.run() ? 0 : 1;
+    });
 }

@@ -1,18 +1,23 @@
 // How the lead over the best rival goes with the number of photons: a picture of what `rivals --csv` wrote.
-//
-//     rivals_plot rivals.csv ratio.svg [set, B] [order, random]
 #include <algorithm>
-#include <cstdio>
-#include <exception>
 #include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/command_line.hpp"
 #include "error_vs_time/plot.hpp"
 
 namespace {
+
+constexpr std::string_view usage =
+    "usage: rivals_plot RIVALS.csv RATIO.svg [SET] [ORDER]\n"
+    "\n"
+    "How the lead over the best rival goes with the number of photons, from the table that rivals --csv wrote: of a "
+    "set\n"
+    "of photons (B), for questions in random or coherent order (random).\n";
 
 /// Seconds of ours and of the best of the others; 0 where nobody was asked.
 struct pair_of_times {
@@ -41,13 +46,13 @@ std::vector<std::string> fields_of(const std::string& line) {
 
 table read(const std::string& name, const std::string& set, const std::string& order) {
     std::ifstream file{name};
-    if (!file) { throw std::runtime_error("rivals_plot: cannot read " + name); }
+    if (!file) { throw std::runtime_error("cannot read " + name); }
     table all;
     std::string line;
     std::getline(file, line);
     while (std::getline(file, line)) {
         const std::vector<std::string> f = fields_of(line);
-        if (f.size() != 6) { throw std::runtime_error("rivals_plot: not six fields: " + line); }
+        if (f.size() != 6) { throw std::runtime_error("not six fields: " + line); }
         if (f[0] != set || (f[3] != order && f[2] != "build")) { continue; }
         pair_of_times& times = all[f[2]][std::stod(f[1])];
         const double seconds = std::stod(f[5]);
@@ -75,19 +80,21 @@ error_vs_time::plot picture_of(const table& all, const std::string& set, const s
     return picture;
 }
 
+int run(command_line::words& asked) {
+    std::vector<std::string> given;
+    while (asked.next()) {
+        if (asked.is_option() || given.size() == 4) { asked.refuse(); }
+        given.push_back(asked.word());
+    }
+    if (given.size() < 2) { throw std::invalid_argument("wants a table and the name of a picture; see --help"); }
+    const std::string set = given.size() > 2 ? given[2] : "B";
+    const std::string order = given.size() > 3 ? given[3] : "random";
+    std::ofstream file{given[1]};
+    file << error_vs_time::svg_file(picture_of(read(given[0], set, order), set, order));
+    if (!file.flush()) { throw std::runtime_error("cannot write " + given[1]); }
+    return 0;
+}
+
 }  // namespace
 
-int main(int count, char** words) {
-    if (count < 3) {
-        std::fprintf(stderr, "rivals_plot rivals.csv ratio.svg [set] [order]\n");
-        return 2;
-    }
-    try {
-        const std::string set = count > 3 ? words[3] : "B";
-        const std::string order = count > 4 ? words[4] : "random";
-        std::ofstream{words[2]} << error_vs_time::svg_file(picture_of(read(words[1], set, order), set, order));
-    } catch (const std::exception& trouble) {
-        std::fprintf(stderr, "%s\n", trouble.what());
-        return 2;
-    }
-}
+int main(int count, char** arguments) { return command_line::run(count, arguments, usage, run); }

@@ -1,8 +1,6 @@
 // How fast an octree of spheres takes records in and tells which of them cover a point, beside the textbook's pointer
 // octree.
 //
-//     rivals_octree [--smoke] [--csv FILE] [--repeats N]
-//
 // All contenders take turns in one process; times are CPU time of one thread, medians over the turns. Answers are
 // compared with brute force in the same run. The last columns are lookups on two threads at once, as a multiple of one
 // thread's.
@@ -12,19 +10,19 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
-#include <iostream>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <aglow/containers/octree.hpp>
 
+#include "common/command_line.hpp"
 #include "kd_tree_sets.hpp"
 #include "textbook_octree.hpp"
 
@@ -44,9 +42,19 @@ static_assert(sizeof(record) == 64);
 
 using records = std::vector<record>;
 
+constexpr std::string_view usage =
+    "usage: rivals_octree [options]\n"
+    "\n"
+    "An octree of spheres beside the textbooks': inserting, and lookups in random and in coherent order.\n"
+    "\n"
+    "  --repeats N   turns whose median counts (5)\n"
+    "  --csv FILE    writes the table as well\n"
+    "  --smoke       only tries whether everything works\n"
+    "  --help        this\n";
+
 struct settings {
     bool smoke = false;
-    int repeats = 5;
+    std::size_t repeats = 5;
     std::string csv;
 };
 
@@ -234,7 +242,7 @@ void compare(char set, std::size_t count, const settings& how, std::ostream& csv
     contenders.push_back(std::make_unique<growing>());
     contenders.push_back(std::make_unique<settled>());
     std::vector<row> rows(contenders.size());
-    for (int turn = 0; turn < how.repeats; ++turn) {
+    for (std::size_t turn = 0; turn < how.repeats; ++turn) {
         for (std::size_t i = 0; i < contenders.size(); ++i) {
             contender& who = *contenders[i];
             row& r = rows[i];
@@ -267,19 +275,18 @@ void compare(char set, std::size_t count, const settings& how, std::ostream& csv
     std::fflush(stdout);
 }
 
-settings read_settings(std::span<char*> words) {
+settings read_settings(command_line::words& asked) {
     settings how;
-    for (std::size_t i = 1; i < words.size(); ++i) {
-        const std::string word = words[i];
-        if (word == "--smoke") {
+    while (asked.next()) {
+        if (asked.is("--smoke")) {
             how.smoke = true;
             how.repeats = 1;
-        } else if (word == "--csv" && i + 1 < words.size()) {
-            how.csv = words[++i];
-        } else if (word == "--repeats" && i + 1 < words.size()) {
-            how.repeats = std::max(1, std::atoi(words[++i]));
+        } else if (asked.is("--csv")) {
+            how.csv = asked.value();
+        } else if (asked.is("--repeats")) {
+            how.repeats = asked.number(1, 1000);
         } else {
-            throw std::invalid_argument("rivals_octree [--smoke] [--csv FILE] [--repeats N]");
+            asked.refuse();
         }
     }
     return how;
@@ -299,11 +306,9 @@ void run(const settings& how) {
 
 }  // namespace
 
-int main(int count, char** words) {
-    try {
-        run(read_settings({words, static_cast<std::size_t>(count)}));
-    } catch (const std::exception& problem) {
-        std::cerr << problem.what() << '\n';
-        return 2;
-    }
+int main(int count, char** arguments) {
+    return command_line::run(count, arguments, usage, [](command_line::words& asked) {
+        run(read_settings(asked));
+        return 0;
+    });
 }
