@@ -48,7 +48,7 @@ struct weigh_pairs {
         for (std::size_t i = 0; i < count + V::count; ++i) {
             pairs.row[i] = reinterpret_cast<const char*>(records + pairs.record[i]);
         }
-        for (std::size_t i = 0; i < count; ++i) { pairs.bend[i] = bends[pairs.record[i]]; }
+        for (std::size_t i = 0; i < count + V::count; ++i) { pairs.bend[i] = bends[pairs.record[i]]; }
         for (std::size_t i = 0; i < count; i += V::count) {
             weigh<V>(pairs, i, limits, std::make_index_sequence<packed_bands<S> + 2>{});
         }
@@ -140,7 +140,8 @@ public:
 
     void finish() {
         if (count_ == 0) { return; }
-        std::fill_n(&lanes_.record[count_], lanes::pad, lanes_.record[0]);
+        std::fill_n(&lanes_.record[count_], lanes::pad, lanes_.record[count_ - 1]);
+        std::fill_n(&lanes_.place[count_], lanes::pad, lanes_.place[count_ - 1]);
         simd::run_best<simd::sixteen, weigh_pairs<S, F>>(records_, bends_, lanes_, count_, limits_);
         std::array<lane_sums<bands>, lanes::most_places> sums{};
         simd::run_best<simd::eight, sum_pairs<S, F>>(lanes_, ends_.data(), places_, sums.data());
