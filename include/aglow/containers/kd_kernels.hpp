@@ -70,6 +70,7 @@ struct approach_kernel {
         }
         for (int level = hinted ? 0 : tree.height; level > 0; --level) {
             const auto l = static_cast<std::size_t>(level);
+            // The first is held against the last of the group: eight that live together ask for nothing ahead.
             std::uint32_t last = probes.back().home[l];
             for (kd_probe<T>& probe : probes) {
                 step_home<P>(tree, probe, l);
