@@ -5,7 +5,6 @@
 // only where the largest radius below a node can reach. Loose octrees: Ulrich 2000.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <concepts>

@@ -30,7 +30,6 @@ template <typename T, std::size_t Points>
 struct near_finds {
     std::array<std::uint32_t, Points * near_spheres<T>::room + simd::lanes> items;
     std::array<std::uint32_t, Points> ends;
-    bool known = false;
     std::uint32_t begin = 0;
     std::size_t told = 0;
 

@@ -140,15 +140,16 @@ private:
         std::array<std::uint32_t, in_step> lists{};
         if (is_listed()) { find_lists(points, lists); }
         near_finds<T, in_step> shared;
+        bool is_shared = false;
         for (std::size_t i = 0, last = 0; i < points.size(); ++i) {
             if (i == last) {
                 while (last < points.size() && lists[last] == lists[i]) { ++last; }
-                shared.known =
+                is_shared =
                     is_listed() && last - i >= together && search_near(lists[i], points.subspan(i, last - i), shared);
             }
             sphere_hits<T> hits;
-            if (!shared.known) { search(covering_question<T>{points[i]}, lists[i], hits); }
-            found(i, shared.known ? shared.next() : hits.items());
+            if (!is_shared) { search(covering_question<T>{points[i]}, lists[i], hits); }
+            found(i, is_shared ? shared.next() : hits.items());
         }
     }
 
@@ -193,11 +194,11 @@ private:
 
     template <typename Question, bool D>
     void search_trees(const Question& question, sphere_hits<T, D>& found) const {
-        for (const std::uint32_t root : roots_) { search(root, question, found); }
+        for (const std::uint32_t root : roots_) { search_tree(root, question, found); }
     }
 
     template <typename Question, bool D>
-    void search(std::uint32_t root, const Question& question, sphere_hits<T, D>& found) const {
+    void search_tree(std::uint32_t root, const Question& question, sphere_hits<T, D>& found) const {
         std::array<std::uint32_t, 8 * lanes> waiting;  // at most 15 of every level, and the last sixteen
         const bounds<T> asked = question.box();
         std::size_t count = 0;
