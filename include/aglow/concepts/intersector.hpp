@@ -33,7 +33,7 @@ using point_of = vec3<scalar_of<S>>;
 ///
 /// - `intersect(ray)`: the nearest hit in front of the origin and before `ray.reach`, as an optional-like `Hit`.
 /// - `occluded(a, b)`: whether anything lies strictly between the two points. Both are already lifted off their
-/// surfaces.
+///   surfaces. Of light from beyond the scene `intersect` is asked instead.
 /// - optional `static constexpr lobe_set possible_lobes` (or a const member function of that name): the lobes that the
 ///   scene can have; what it cannot have is left out.
 /// - member type `scalar` where it is not float: rays and hits are made of it.

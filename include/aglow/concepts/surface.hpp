@@ -46,7 +46,8 @@ enum class lobe_set : std::uint8_t {
 [[nodiscard]] constexpr bool any(lobe_set a, lobe_set b = lobe_set::all) { return (a & b) != lobe_set::none; }
 
 /// Where a ray met the scene. `position` = origin + t direction; `normal` is the unit geometric normal, the same from
-/// both sides. May carry anything more: a shading normal, ids, and
+/// both sides; where it is not unit to half a per cent the hit is dropped and counted as a `host_fault`. May carry
+/// anything more: a shading normal, ids, and
 /// - `position_error`: how far `position` may lie from the true surface (see `position_error()`); else a guess is made
 ///   from the largest coordinate of the ray's origin and the position.
 template <typename H>
