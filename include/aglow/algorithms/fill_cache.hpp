@@ -156,14 +156,15 @@ private:
     void gather(const std::vector<std::size_t>& chosen, Progress& progress) {
         const std::size_t uncovered = chosen.size() + pending_.size();
         for (std::size_t first = 0; first < chosen.size() && !result_.cancelled; first += batch) {
+            const auto begin = chosen.begin() + static_cast<std::ptrdiff_t>(first);
             const std::size_t count = std::min(batch, chosen.size() - first);
-            gather_batch(std::span{chosen}.subspan(first, count));
+            gather_batch({begin, begin + static_cast<std::ptrdiff_t>(count)});
             const fill_progress now{result_.records, candidates_.size(), uncovered};
             result_.cancelled = !progress(now);
         }
     }
 
-    void gather_batch(std::span<const std::size_t> chosen) {
+    void gather_batch(const std::vector<std::size_t>& chosen) {
         const auto estimates = estimates_at(chosen, estimator_, 0);
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             const record_status status = cache_.insert(estimates[i], candidates_[chosen[i]].footprint);
@@ -172,7 +173,7 @@ private:
         }
     }
 
-    [[nodiscard]] std::vector<irradiance_estimate<S, T>> estimates_at(std::span<const std::size_t> chosen,
+    [[nodiscard]] std::vector<irradiance_estimate<S, T>> estimates_at(const std::vector<std::size_t>& chosen,
                                                                       const irradiance_estimator<T>& estimator,
                                                                       std::uint64_t pass) {
         std::vector<irradiance_estimate<S, T>> estimates(chosen.size());

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <aglow/algorithms/direct_light.hpp>
@@ -181,7 +180,7 @@ template <Spectrum S, std::floating_point T>
 }
 
 /// All parts together, relative to all light.
-[[nodiscard]] inline shared_error shared_by(std::span<const shared_part> parts, double indirect, double caustic) {
+[[nodiscard]] inline shared_error shared_by(const std::vector<shared_part>& parts, double indirect, double caustic) {
     shared_part sum;
     for (const shared_part& p : parts) {
         sum.all += p.all;

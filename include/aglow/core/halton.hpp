@@ -172,23 +172,23 @@ inline void halton_scrambling::add_axis(std::uint32_t base) {
 /// with the order reversed.
 inline void halton_scrambling::add_place(const axis& a, std::uint32_t digits, random_sampler<double>& random) {
     std::vector<std::uint16_t> order(a.base);
-    std::vector<std::uint16_t> built{0};
+    digits_.resize(digits_.size() + a.block);
+    std::uint16_t* const table = digits_.data() + (digits_.size() - a.block);
+    std::uint32_t built = 1;
     for (std::uint32_t digit = 0; digit < digits; ++digit) {
         for (std::uint32_t i = 0; i < a.base; ++i) { order[i] = static_cast<std::uint16_t>(i); }
         for (std::uint32_t i = a.base; i > 1; --i) {
             const auto j = static_cast<std::uint32_t>(random.next_1d() * i);
             std::swap(order[i - 1], order[j]);
         }
-        std::vector<std::uint16_t> longer;
-        longer.reserve(built.size() * a.base);
-        for (const std::uint16_t next : order) {
-            for (const std::uint16_t before : built) {
-                longer.push_back(static_cast<std::uint16_t>(before * a.base + next));
+        // From the last on: what was built stands where the first go.
+        for (std::uint32_t next = a.base; next-- > 0;) {
+            for (std::uint32_t before = 0; before < built; ++before) {
+                table[next * built + before] = static_cast<std::uint16_t>(table[before] * a.base + order[next]);
             }
         }
-        built = std::move(longer);
+        built *= a.base;
     }
-    digits_.insert(digits_.end(), built.begin(), built.end());
 }
 
 /// The numbers of one decision: so many Halton dimensions, hashed random numbers after them.

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include <aglow/core/parallel.hpp>
@@ -169,20 +168,19 @@ public:
     /// The scale of each class that turns guesses into error bars.
     [[nodiscard]] std::vector<class_scale> scales(double confidence) const {
         std::vector<const probe_record*> all;
-        std::vector<std::uint32_t> classes;
+        class_lists lists{options_.class_probes};
         const auto add = [&](const probe_record& r) {
             all.push_back(&r);
-            classes.push_back(class_of(picture_, r.pixel));
+            lists.add(class_of(picture_, r.pixel));
         };
         for (const probe_record& r : records_) {
             if (r.uniform) { add(r); }
         }
         std::for_each(extra_.begin(), extra_.end(), add);
         std::vector<class_scale> found;
-        class_lists{classes, options_.class_probes}.for_each(
-            [&](std::uint32_t id, std::span<const std::size_t> members, bool merged) {
-                found.push_back({id, bar_scale(all, members, confidence), members.size(), merged});
-            });
+        lists.for_each([&](std::uint32_t id, const std::vector<std::size_t>& members, bool merged) {
+            found.push_back({id, bar_scale(all, members, confidence), members.size(), merged});
+        });
         return found;
     }
 
@@ -234,7 +232,7 @@ private:
     /// Conformal quantile of |B−U|/guess over `members`, with three quarters of what the probes' noise adds to it taken
     /// out: its square grows about as the noise's variance, which is twice as large for halves of the batches. (All of
     /// it taken out, small classes fell below their coverage.)
-    [[nodiscard]] double bar_scale(std::span<const probe_record* const> all, std::span<const std::size_t> members,
+    [[nodiscard]] double bar_scale(const std::vector<const probe_record*>& all, const std::vector<std::size_t>& members,
                                    double confidence) const {
         const auto at = [&](unsigned chosen) {
             std::vector<double> scores;

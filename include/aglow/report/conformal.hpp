@@ -44,14 +44,15 @@ struct class_list {
     return at->members;
 }
 
-/// Puts each index of `classes` into the list of its class; classes of fewer than `least` share one list of everything.
+/// Which of those that were added are of which class; classes of fewer than `least` share one list of everything.
 class class_lists {
 public:
-    class_lists(std::span<const std::uint32_t> classes, std::size_t least) : least_{least} {
-        for (std::size_t i = 0; i < classes.size(); ++i) {
-            members_of(own_, classes[i]).push_back(i);
-            everything_.push_back(i);
-        }
+    explicit class_lists(std::size_t least) : least_{least} {}
+
+    /// Adds one more, of class `id`.
+    void add(std::uint32_t id) {
+        members_of(own_, id).push_back(everything_.size());
+        everything_.push_back(everything_.size());
     }
 
     /// Calls `visit(id, members, merged)` for every class in rising order of id.
@@ -59,7 +60,7 @@ public:
     void for_each(const Visit& visit) const {
         for (const auto& [id, members] : own_) {
             const bool merged = members.size() < least_;
-            visit(id, std::span<const std::size_t>{merged ? everything_ : members}, merged);
+            visit(id, merged ? everything_ : members, merged);
         }
     }
 
@@ -74,8 +75,10 @@ private:
 [[nodiscard]] inline std::vector<class_scale> conformal_scales(std::span<const double> scores,
                                                                std::span<const std::uint32_t> classes,
                                                                double confidence, std::size_t least = 60) {
+    class_lists lists{least};
+    for (const std::uint32_t id : classes) { lists.add(id); }
     std::vector<class_scale> scales;
-    class_lists{classes, least}.for_each([&](std::uint32_t id, std::span<const std::size_t> members, bool merged) {
+    lists.for_each([&](std::uint32_t id, const std::vector<std::size_t>& members, bool merged) {
         std::vector<double> own;
         for (const std::size_t i : members) { own.push_back(scores[i]); }
         const double scale = conformal_quantile(own, confidence).value_or(std::numeric_limits<double>::infinity());
