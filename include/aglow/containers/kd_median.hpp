@@ -44,8 +44,11 @@ public:
         const auto clamp = [&](double at) {
             return static_cast<std::uint32_t>(std::clamp(at, 1.0, static_cast<double>(samples)));
         };
-        std::sort(sample_.begin(), sample_.begin() + samples);
-        return {sample_[clamp(samples * share - slack) - 1], sample_[clamp(samples * share + slack) - 1]};
+        T* const low = sample_.data() + (clamp(samples * share - slack) - 1);
+        T* const high = sample_.data() + (clamp(samples * share + slack) - 1);
+        std::nth_element(sample_.data(), high, sample_.data() + samples);
+        std::nth_element(sample_.data(), low, high);
+        return {*low, *high};
     }
 
 private:

@@ -154,16 +154,18 @@ template <typename Runner, typename T>
     }
     pad(sample, kd_few);
     const auto rank = static_cast<std::uint32_t>(std::uint64_t{k} * kd_few / count);
-    const auto at = [&](std::uint32_t r) { return Runner::template run<kth_by_pairs_kernel>(sample, kd_few, r); };
+    const T* const few = sample;
+    const auto at = [&](std::uint32_t r) { return Runner::template run<kth_by_pairs_kernel>(few, kd_few, r); };
     return {at(rank > 4 ? rank - 3 : 1), simd::next_above(at(std::min(rank + 4, kd_few)))};
 }
 
 /// The k-th smallest, k from 1, of numbers in [0, bound), faster where they are roughly even.
-/// `numbers` and the two spares have room for sixteen more.
+/// `given` and the two spares have room for sixteen more.
 template <typename Runner, typename T>
-[[nodiscard]] T kth_smallest(T* numbers, std::uint32_t count, std::uint32_t k, T bound, T* spare, T* other) {
+[[nodiscard]] T kth_smallest(T* given, std::uint32_t count, std::uint32_t k, T bound, T* spare, T* other) {
     kd_interval<T> all{0, bound};
-    pad(numbers, count);
+    pad(given, count);
+    const T* numbers = given;
     for (int round = 0; count > kd_few && round < 8; ++round) {
         if (round > 0) {
             const auto [least, most] = Runner::template run<range_kernel>(numbers, count);

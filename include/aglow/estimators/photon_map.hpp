@@ -50,7 +50,7 @@ public:
             index_packed(photons, sound, factor, run);
         } else {
             tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return photons[i].position; }, run};
-            photons_.resize(tree_.size());
+            photons_ = std::vector<Item>(tree_.size());
             for (std::size_t slot = 0; slot < photons_.size(); ++slot) {
                 photons_[slot] = photons[sound[tree_.order()[slot]]].what;
                 photons_[slot].power = photons_[slot].power * factor;
@@ -154,7 +154,7 @@ private:
             }
         });
         tree_ = kd_tree<T>{packed, [&](const Item& p) { return p.position(cells_); }, run};
-        photons_.resize(tree_.size());
+        photons_ = std::vector<Item>(tree_.size());
         for (std::size_t slot = 0; slot < photons_.size(); ++slot) { photons_[slot] = packed[tree_.order()[slot]]; }
     }
 
