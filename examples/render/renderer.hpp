@@ -3,36 +3,29 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
 #include <aglow/algorithms/cache_integrators.hpp>
-#include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
-#include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
-#include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/plan.hpp>
-#include <aglow/core/random.hpp>
-#include <aglow/report/render_until.hpp>
-#include <aglow/report/statement.hpp>
 
-#include "common/audited_film.hpp"
 #include "common/camera.hpp"
-#include "common/counted_scene.hpp"
+#include "common/developed.hpp"
 #include "common/drawing.hpp"
 #include "common/light_set.hpp"
 #include "common/progress.hpp"
+#include "render/certifier.hpp"
 #include "render/options.hpp"
 #include "render/phases.hpp"
 #include "render/report.hpp"
+#include "render/settings.hpp"
 #include "render/usage_error.hpp"
 
 namespace host {
@@ -52,7 +45,9 @@ public:
           view_{view},
           options_{options},
           run_{threads(options)},
-          budget_{options.seconds, [begun = options.begun] { return since(begun); }} {}
+          budget_{options.seconds, [begun = options.begun] { return since(begun); }},
+          settings_{options_},
+          certifier_{scene, lights, view, options_, run_} {}
 
     [[nodiscard]] render_result render() {
         if (options_.reference) { return reference(); }
@@ -98,55 +93,12 @@ private:
         }
     }
 
-    // ---- settings ---------------------------------------------------------------------------------------------------
-
-    /// How much finer maps and caches must be than for an error of 5 %, which is where picture and audits together are
-    /// cheapest with the numbers below; their own error falls with the square root of rays, and slower with photons.
-    [[nodiscard]] double fineness() const { return std::clamp(0.05 / options_.until, 0.25, 25.0); }
-
-    [[nodiscard]] aglow::photon_options photons(aglow::photon_options wanted) const {
-        if (options_.until > 0) {
-            const auto times = [&](std::size_t count, double factor) {
-                return static_cast<std::size_t>(static_cast<double>(count) * factor);
-            };
-            wanted.indirect = times(wanted.indirect, 0.5 * std::pow(fineness(), 1.5));
-            wanted.caustic = times(wanted.caustic, std::max(1.0, std::pow(fineness(), 1.5)));
-        }
-        wanted.direct = options_.direct_photons.value_or(wanted.direct);
-        wanted.caustic = options_.caustic_photons.value_or(wanted.caustic);
-        wanted.indirect = options_.indirect_photons.value_or(wanted.indirect);
-        wanted.seed = options_.seed;
-        return wanted;
-    }
-    [[nodiscard]] aglow::density_options density() const {
-        aglow::density_options d;
-        d.count = options_.photons_per_estimate.value_or(d.count);
-        return d;
-    }
-    [[nodiscard]] aglow::caching_options caching() const {
-        aglow::caching_options c;
-        c.view.width = options_.width;
-        c.view.height = options_.height;
-        c.view.seed = options_.seed;
-        c.fill.seed = options_.seed;
-        if (options_.until > 0) {
-            c.fill.rays = static_cast<std::uint32_t>(std::max(16.0, 100 * fineness() * fineness()));
-            c.cache.reach.accuracy = 0.12 * std::pow(fineness(), -0.6);
-        }
-        c.fill.rays = options_.gather_rays.value_or(c.fill.rays);
-        c.cache.reach.accuracy = options_.accuracy.value_or(c.cache.reach.accuracy);
-        c.caustics.photons = photons(c.caustics.photons);
-        c.caustics.photons.direct = c.caustics.photons.indirect = 0;  // its rays find such light without photons
-        c.caustics.density = density();
-        return c;
-    }
-
     // ---- methods ----------------------------------------------------------------------------------------------------
 
     void irradiance_cache() {
         const aglow::irradiance_caching<World, light_set<T>> integrator = prepare([&](const auto& told) {
-            return aglow::irradiance_caching<World, light_set<T>>{scene_, lights_, scene_.bounds(), eye(), caching(),
-                                                                  run_,   told};
+            return aglow::irradiance_caching<World, light_set<T>>{
+                scene_, lights_, scene_.bounds(), eye(), settings_.caching(), run_, told};
         });
         if constexpr (integrator.has_maps) {
             finish(integrator, &integrator.maps(), &integrator.cache());
@@ -155,36 +107,22 @@ private:
         }
     }
     void photon_map() {
-        aglow::photon_mapping_options o;
-        o.photons = photons(o.photons);
-        o.density = density();
-        o.direct_from_map = o.photons.direct > 0;
         const aglow::photon_mapping<World, light_set<T>> integrator = prepare([&](const auto& told) {
-            return aglow::photon_mapping<World, light_set<T>>{scene_, lights_, o, run_, told};
+            return aglow::photon_mapping<World, light_set<T>>{scene_, lights_, settings_.photon_mapping(), run_, told};
         });
         finish(integrator, &integrator.maps(), nullptr);
     }
     void final_gather() {
-        aglow::final_gathering_options o;
-        o.photons = photons(o.photons);
-        o.density = density();
-        o.irradiance.density.count = o.density.count;
-        o.irradiance.seed = options_.seed;
-        o.rays = options_.gather_rays.value_or(o.rays);
         const aglow::final_gathering<World, light_set<T>> integrator = prepare([&](const auto& told) {
-            return aglow::final_gathering<World, light_set<T>>{scene_, lights_, o, run_, told};
+            return aglow::final_gathering<World, light_set<T>>{scene_, lights_, settings_.final_gathering(), run_,
+                                                               told};
         });
         finish(integrator, &integrator.maps(), nullptr);
     }
     void gather_cache() {
-        aglow::gather_caching_options o;
-        o.photons = photons(o.photons);
-        o.density = density();
-        o.irradiance.density.count = o.density.count;
-        o.irradiance.seed = options_.seed;
-        o.caching = caching();
         const aglow::gather_caching<World, light_set<T>> integrator = prepare([&](const auto& told) {
-            return aglow::gather_caching<World, light_set<T>>{scene_, lights_, scene_.bounds(), eye(), o, run_, told};
+            return aglow::gather_caching<World, light_set<T>>{
+                scene_, lights_, scene_.bounds(), eye(), settings_.gather_caching(), run_, told};
         });
         finish(integrator, &integrator.maps(), &integrator.cache());
     }
@@ -263,139 +201,28 @@ private:
         if (taken_ == 0) { result_.add_fact("samples a pixel", film.samples()); }
         taken_ = film.samples();
         if (film.dropped() > 0) { result_.add_fact(name + ", samples dropped", film.dropped()); }
-        if (with_error && options_.error) { audit(film); }
+        if (with_error && options_.error) { certifier_.audit(film, budget_, result_); }
         return taken_from(film, with_error);
     }
 
     picture taken_from(const aglow::film<S>& film, bool with_error) {
-        picture image{options_.width, options_.height};
-        picture error{options_.width, options_.height};
-        for (std::size_t y = 0; y < options_.height; ++y) {
-            for (std::size_t x = 0; x < options_.width; ++x) {
-                image.at(x, y) = film.radiance(x, y);
-                error.at(x, y) = S{film.error(x, y)};
-            }
-        }
-        if (with_error) { result_.layers.push_back({"error", std::move(error)}); }
-        return image;
+        if (with_error) { result_.layers.push_back({"error", developed_errors(film)}); }
+        return developed(film);
     }
 
-    // ---- how wrong --------------------------------------------------------------------------------------------------
-
-    /// What looks at pixels again: path tracing, guided where there may be mirrors.
-    [[nodiscard]] auto judge() {
-        if constexpr (aglow::any(aglow::static_lobes<World>, aglow::lobe_set::specular)) {
-            if (!guide_) { guide_.emplace(scene_, lights_, aglow::path_guide_options{.seed = options_.seed}, run_); }
-            return aglow::guided_path_tracer<World, light_set<T>>{scene_, lights_, *guide_};
-        } else {
-            return aglow::path_tracer<World, light_set<T>>{scene_, lights_};
-        }
-    }
-
-    template <typename Use>
-    auto with_probe(const Use& use) {
-        const auto through = eye();
-        const auto tracer = judge();
-        return use(aglow::pixel_probe{through, tracer, options_.width});
-    }
-
-    [[nodiscard]] std::vector<char> features() const {
-        return feature_pixels(options_.width, options_.height, [this](std::size_t x, std::size_t y) {
-            const auto hit = scene_.intersect(eye()({static_cast<T>(x) + T(0.5), static_cast<T>(y) + T(0.5)}));
-            return hit ? static_cast<std::uint32_t>(hit->primitive) : ~0u;
-        });
-    }
-
-    /// Rays of a sample, by a few; what a clock tells would not be the same again.
+    /// Adds samples until an audit certifies the error that was asked for, or it is clear that none will.
     template <typename Integrator>
-    [[nodiscard]] double rays_a_sample(const Integrator& integrator) const {
-        constexpr std::size_t pixels = 1024;
-        const auto through = eye();
-        const aglow::pixel_probe look{through, integrator, options_.width};
-        const auto rays = [] { return ray_count::here().nearest + ray_count::here().shadow; };
-        const std::uint64_t before = rays();
-        for (std::size_t i = 0; i < pixels; ++i) {
-            (void)look(aglow::mix(options_.seed, i) % (options_.width * options_.height), options_.seed, 1);
-        }
-        return static_cast<double>(rays() - before) / pixels;
+    picture until(const Integrator& integrator, double lookups) {
+        const aglow::film<S> film = certifier_.until(integrator, lookups, budget_, result_);
+        taken_ = film.samples();
+        if (options_.error) { certifier_.audit(film, budget_, result_); }
+        return taken_from(film, true);
     }
 
     /// What the lookups of a sample cost, in rays: about one in a cache, eight in a map of photons.
     [[nodiscard]] double lookups_a_sample(const maps_type* maps, const cache_type* cache) const {
         const bool caustics = maps && maps->caustic.size() > 0;
         return (cache ? 1 : 0) + (caustics ? 8 : 0) + (options_.how == method::photon_map ? 8 : 0);
-    }
-
-    /// Adds samples until an audit certifies the error that was asked for, or it is clear that none will. `lookups` as
-    /// by `lookups_a_sample`.
-    template <typename Integrator>
-    picture until(const Integrator& integrator, double lookups) {
-        const auto begun = clock::now();
-        aglow::film<S> film{options_.width, options_.height};
-        std::optional<audited_film> numbers;
-        const auto advance = [&](double work) {
-            const auto wanted = static_cast<std::uint32_t>(std::ceil(work));
-            film.expose(eye(), integrator, {.samples = wanted - film.samples(), .seed = options_.seed}, run_);
-            return numbers.emplace(film).view();
-        };
-        aglow::render_until_options o;
-        o.audit = {.target = options_.until, .seed = options_.seed};
-        o.first_work = 4;
-        o.most_work = 1 << 16;
-        const auto tracer = judge();
-        // Where paths are guided, that costs about as much as three rays.
-        const double guided = guide_ && !guide_->empty() ? 3 : 0;
-        o.probe_work = (rays_a_sample(tracer) + guided) / (rays_a_sample(integrator) + lookups) /
-                       static_cast<double>(options_.width * options_.height);
-        o.progress = [this](const aglow::until_progress& p) {
-            std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
-            return !budget_.is_over();
-        };
-        const aglow::until_result reached =
-            with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, run_); });
-        result_.phases.push_back({"picture and audits", since(begun)});
-        result_.add_fact("samples a pixel", film.samples());
-        taken_ = film.samples();
-        if (reached.status == aglow::until_status::unreachable) {
-            result_.notes.push_back("the error cannot be reached with these settings: more samples will not do");
-        }
-        if (reached.status == aglow::until_status::cancelled) {
-            result_.notes.push_back("the time was over before the error could be certified");
-        } else if (reached.claims > 0 || reached.status == aglow::until_status::broken) {
-            note(reached.certificate);
-        } else if (!reached.checks.empty()) {
-            char text[80];
-            std::snprintf(text, sizeof text, "not certified: the mean relative error is about %.3g %%",
-                          100 * reached.checks.back().error);
-            result_.notes.push_back(text);
-        }
-        if (options_.error) { audit(film); }
-        return taken_from(film, true);
-    }
-
-    /// Audits a finished film: the statements, and the error bars of all pixels.
-    void audit(const aglow::film<S>& film) {
-        const auto begun = clock::now();
-        const audited_film numbers{film, features(),
-                                   aglow::caustic_light(scene_, lights_, eye(), options_.width, options_.height,
-                                                        {.seed = options_.seed}, run_)};
-        aglow::audit_options o{
-            .target = options_.until > 0 ? options_.until : 0.05, .seed = options_.seed, .stream = 1};
-        o.budget = options_.error_samples.value_or(o.budget);
-        const aglow::audit_result stated =
-            with_probe([&](const auto& probe) { return aglow::audit(numbers.view(), probe, o, run_); });
-        result_.phases.push_back({"audit", since(begun)});
-        if (options_.until == 0) { note(stated); }
-        const std::vector<double> bars = aglow::error_bars(numbers.view(), stated);
-        picture layer{options_.width, options_.height};
-        for (std::size_t i = 0; i < bars.size(); ++i) { layer.pixels[i] = S{static_cast<T>(bars[i])}; }
-        result_.heat = heat_map(taken_from(film, false), bars);
-        result_.layers.push_back({"error_bar", std::move(layer)});
-    }
-
-    void note(const aglow::audit_result& stated) {
-        std::istringstream lines{aglow::statement(stated)};
-        for (std::string line; std::getline(lines, line);) { result_.notes.push_back(line); }
     }
 
     /// Layers are given as many samples as the picture got, whatever it was limited by.
@@ -439,7 +266,7 @@ private:
 
     [[nodiscard]] const picture& caustic(const maps_type* maps) {
         if (caustic_) { return *caustic_; }
-        const aglow::map_layer<S, T> layer{maps->caustic, density()};
+        const aglow::map_layer<S, T> layer{maps->caustic, settings_.density()};
         return caustic_.emplace(minus(expose("caustics", aglow::layered_integrator{scene_, lights_, layer}), glow()));
     }
 
@@ -495,9 +322,10 @@ private:
     aglow::own_threads run_;
     render_result result_{};
     time_budget budget_;
+    render_settings settings_;
+    certifier<World> certifier_;
     double end_{options_.seconds};  ///< of the picture, in seconds since the job began
     std::uint32_t taken_{0};
-    std::optional<aglow::path_guide<T>> guide_{};
     std::optional<picture> direct_{};
     std::optional<picture> caustic_{};
 };

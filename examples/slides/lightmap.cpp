@@ -156,15 +156,14 @@ int main(int count, char** words) {
         std::printf("baked in %.2f s, audited in %.2f s: off by %.2f %%, at most %.2f %%, in the mean\n", baked,
                     clock.seconds() - baked, 100 * said.likely_error, 100 * said.mean_error_bound);
 
-        const host::picture empty{s.side(), s.side()};
-        host::picture light = empty, irradiance = empty;
+        const host::picture light = host::developed(film);
+        host::picture irradiance = light;
         std::vector<double> bars = aglow::error_bars(seen.view(), said);
         for (std::size_t i = 0; i < light.pixels.size(); ++i) {
-            light.pixels[i] = film.radiance(i % s.side(), i / s.side());
+            irradiance.pixels[i] *= map.irradiance_per_radiance(i);
             if (!map.at(i)) { bars[i] = 0; }
-            irradiance.pixels[i] = light.pixels[i] * map.irradiance_per_radiance(i);
         }
-        const host::picture indirect = indirect_light(map, bake.cache(), empty);
+        const host::picture indirect = indirect_light(map, bake.cache(), {s.side(), s.side()});
         const auto shown = [&](host::picture image, float exposure, const char* what) {
             for (vec3<float>& p : image.pixels) { p *= exposure; }
             return host::captioned(image, s.tiny() ? "" : what);

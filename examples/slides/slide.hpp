@@ -16,6 +16,7 @@
 #include <aglow/core/parallel.hpp>
 
 #include "common/camera.hpp"
+#include "common/developed.hpp"
 #include "common/drawing.hpp"
 #include "common/image_io.hpp"
 
@@ -89,14 +90,6 @@ public:
     }
 
 private:
-    static picture developed(const aglow::film<vec3<float>>& film) {
-        picture result{film.width(), film.height()};
-        for (std::size_t y = 0; y < film.height(); ++y) {
-            for (std::size_t x = 0; x < film.width(); ++x) { result.at(x, y) = film.radiance(x, y); }
-        }
-        return result;
-    }
-
     std::filesystem::path folder_;
     bool tiny_;
     aglow::own_threads run_{};

@@ -1,0 +1,178 @@
+// How wrong a rendering is: pictures that go on until an error is certified, error bars, and statements.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <aglow/algorithms/caustic_light.hpp>
+#include <aglow/algorithms/film.hpp>
+#include <aglow/algorithms/path_guide.hpp>
+#include <aglow/algorithms/path_trace.hpp>
+#include <aglow/algorithms/pixel_probe.hpp>
+#include <aglow/core/parallel.hpp>
+#include <aglow/core/random.hpp>
+#include <aglow/report/render_until.hpp>
+#include <aglow/report/statement.hpp>
+
+#include "common/audited_film.hpp"
+#include "common/camera.hpp"
+#include "common/counted_scene.hpp"
+#include "common/developed.hpp"
+#include "common/light_set.hpp"
+#include "render/options.hpp"
+#include "render/phases.hpp"
+#include "render/report.hpp"
+
+namespace host {
+
+/// Holds pictures of one scene to path tracing.
+template <typename World>
+class certifier {
+    using T = float;
+    using S = vec3<float>;
+
+public:
+    /// Keeps references to all but `view`.
+    certifier(const World& scene, const light_set<T>& lights, const camera<T>& view, const render_options& options,
+              const aglow::own_threads& run)
+        : scene_{scene}, lights_{lights}, view_{view}, options_{options}, run_{run} {}
+
+    /// A film with samples until an audit certifies the error that was asked for, or it is clear that none will; what
+    /// came of it is told to `result`. `lookups` is what those of a sample cost, in rays.
+    template <typename Integrator>
+    [[nodiscard]] aglow::film<S> until(const Integrator& integrator, double lookups, const time_budget& budget,
+                                       render_result& result) {
+        const double begun = budget.spent();
+        aglow::film<S> film{options_.width, options_.height};
+        std::optional<audited_film> numbers;
+        const auto advance = [&](double work) {
+            const auto wanted = static_cast<std::uint32_t>(std::ceil(work));
+            film.expose(eye(), integrator, {.samples = wanted - film.samples(), .seed = options_.seed}, run_);
+            return numbers.emplace(film).view();
+        };
+        aglow::render_until_options o;
+        o.audit = {.target = options_.until, .seed = options_.seed};
+        o.first_work = 4;
+        o.most_work = 1 << 16;
+        o.probe_work = probe_work(integrator, lookups);
+        o.progress = [&](const aglow::until_progress& p) {
+            std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
+            return !budget.is_over();
+        };
+        const aglow::until_result reached =
+            with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, run_); });
+        result.phases.push_back({"picture and audits", budget.spent() - begun});
+        result.add_fact("samples a pixel", film.samples());
+        tell(reached, result);
+        return film;
+    }
+
+    /// Audits a finished film: the statements, and the error bars of all pixels.
+    void audit(const aglow::film<S>& film, const time_budget& budget, render_result& result) {
+        const double begun = budget.spent();
+        const audited_film numbers{film, features(),
+                                   aglow::caustic_light(scene_, lights_, eye(), options_.width, options_.height,
+                                                        {.seed = options_.seed}, run_)};
+        aglow::audit_options o{
+            .target = options_.until > 0 ? options_.until : 0.05, .seed = options_.seed, .stream = 1};
+        o.budget = options_.error_samples.value_or(o.budget);
+        const aglow::audit_result stated =
+            with_probe([&](const auto& probe) { return aglow::audit(numbers.view(), probe, o, run_); });
+        result.phases.push_back({"audit", budget.spent() - begun});
+        if (options_.until == 0) { note(stated, result); }
+        const std::vector<double> bars = aglow::error_bars(numbers.view(), stated);
+        picture layer{options_.width, options_.height};
+        for (std::size_t i = 0; i < bars.size(); ++i) { layer.pixels[i] = S{static_cast<T>(bars[i])}; }
+        result.heat = heat_map(developed(film), bars);
+        result.layers.push_back({"error_bar", std::move(layer)});
+    }
+
+private:
+    [[nodiscard]] auto eye() const {
+        return [this](const vec2<T>& film) { return view_.through(film, options_.width, options_.height); };
+    }
+
+    /// What looks at pixels again: path tracing, guided where there may be mirrors.
+    [[nodiscard]] auto judge() {
+        if constexpr (aglow::any(aglow::static_lobes<World>, aglow::lobe_set::specular)) {
+            if (!guide_) { guide_.emplace(scene_, lights_, aglow::path_guide_options{.seed = options_.seed}, run_); }
+            return aglow::guided_path_tracer<World, light_set<T>>{scene_, lights_, *guide_};
+        } else {
+            return aglow::path_tracer<World, light_set<T>>{scene_, lights_};
+        }
+    }
+
+    template <typename Use>
+    auto with_probe(const Use& use) {
+        const auto through = eye();
+        const auto tracer = judge();
+        return use(aglow::pixel_probe{through, tracer, options_.width});
+    }
+
+    [[nodiscard]] std::vector<char> features() const {
+        return feature_pixels(options_.width, options_.height, [this](std::size_t x, std::size_t y) {
+            const auto hit = scene_.intersect(eye()({static_cast<T>(x) + T(0.5), static_cast<T>(y) + T(0.5)}));
+            return hit ? static_cast<std::uint32_t>(hit->primitive) : ~0u;
+        });
+    }
+
+    /// What a sample of a probe costs, in samples of every pixel by `integrator`.
+    template <typename Integrator>
+    [[nodiscard]] double probe_work(const Integrator& integrator, double lookups) {
+        const auto tracer = judge();
+        // Where paths are guided, that costs about as much as three rays.
+        const double guided = guide_ && !guide_->empty() ? 3 : 0;
+        return (rays_a_sample(tracer) + guided) / (rays_a_sample(integrator) + lookups) /
+               static_cast<double>(options_.width * options_.height);
+    }
+
+    /// Rays of a sample, by a few; what a clock tells would not be the same again.
+    template <typename Integrator>
+    [[nodiscard]] double rays_a_sample(const Integrator& integrator) const {
+        constexpr std::size_t pixels = 1024;
+        const auto through = eye();
+        const aglow::pixel_probe look{through, integrator, options_.width};
+        const auto rays = [] { return ray_count::here().nearest + ray_count::here().shadow; };
+        const std::uint64_t before = rays();
+        for (std::size_t i = 0; i < pixels; ++i) {
+            (void)look(aglow::mix(options_.seed, i) % (options_.width * options_.height), options_.seed, 1);
+        }
+        return static_cast<double>(rays() - before) / pixels;
+    }
+
+    static void tell(const aglow::until_result& reached, render_result& result) {
+        if (reached.status == aglow::until_status::unreachable) {
+            result.notes.push_back("the error cannot be reached with these settings: more samples will not do");
+        }
+        if (reached.status == aglow::until_status::cancelled) {
+            result.notes.push_back("the time was over before the error could be certified");
+        } else if (reached.claims > 0 || reached.status == aglow::until_status::broken) {
+            note(reached.certificate, result);
+        } else if (!reached.checks.empty()) {
+            char text[80];
+            std::snprintf(text, sizeof text, "not certified: the mean relative error is about %.3g %%",
+                          100 * reached.checks.back().error);
+            result.notes.push_back(text);
+        }
+    }
+    static void note(const aglow::audit_result& stated, render_result& result) {
+        std::istringstream lines{aglow::statement(stated)};
+        for (std::string line; std::getline(lines, line);) { result.notes.push_back(line); }
+    }
+
+    const World& scene_;
+    const light_set<T>& lights_;
+    camera<T> view_;
+    const render_options& options_;
+    const aglow::own_threads& run_;
+    std::optional<aglow::path_guide<T>> guide_{};
+};
+
+}  // namespace host
