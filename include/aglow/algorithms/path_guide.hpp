@@ -223,6 +223,15 @@ public:
         return {light.radiance, 0};
     }
 
+    /// The same, but for where the host's faults are noted: there, if the options name no place.
+    [[nodiscard]] guided_path_tracer watched(host_faults& faults) const {
+        guided_path_tracer same = *this;
+        if (!same.options_.faults) { same.options_.faults = &faults; }
+        return same;
+    }
+    /// Where the host's faults are noted; null for nowhere.
+    [[nodiscard]] const host_faults* faults() const { return options_.faults; }
+
 private:
     const World& scene_;
     const Lights& lights_;

@@ -30,6 +30,15 @@ public:
         return walk_path(scene_, lights_, gather, numbers, rule, options_);
     }
 
+    /// The same, but for where the host's faults are noted: there, if the options name no place.
+    [[nodiscard]] path_tracer watched(host_faults& faults) const {
+        path_tracer same = *this;
+        if (!same.options_.faults) { same.options_.faults = &faults; }
+        return same;
+    }
+    /// Where the host's faults are noted; null for nowhere.
+    [[nodiscard]] const host_faults* faults() const { return options_.faults; }
+
 private:
     const World& scene_;
     const Lights& lights_;

@@ -45,9 +45,19 @@ inline void add_reason(audit_result& result, bool holds, const char* words) {
     if (holds) { result.reasons.emplace_back(words); }
 }
 
+/// Whether broken answers of the probes' host cost more light than a tenth of the target, which decides nothing.
+[[nodiscard]] inline bool has_lost_light(const audit_result& result) { return result.lost_share > 0.1 * result.target; }
+
+/// Whether what the probes themselves answered is broken, so that no more of them would help.
+[[nodiscard]] inline bool has_broken_probes(const audit_result& result) {
+    return result.broken_samples > 0 || has_lost_light(result);
+}
+
 /// Signs that the probes themselves cannot be trusted.
 inline void find_doubts(audit_result& result, bool heavy_tailed) {
     add_reason(result, result.broken_samples > 0, "a probe returned infinity or NaN");
+    add_reason(result, has_lost_light(result),
+               "the host's scene or lights gave broken answers, and probes lost light by them");
     add_reason(result, heavy_tailed, "heavy tails: the probes' noise does not fall as that of a finite variance");
     add_reason(result, result.largest_share > 0.2,
                "heavy tails: a single probe makes up more than a fifth of the error");
@@ -122,6 +132,7 @@ template <std::floating_point T>
     result.samples_per_probe = sample.samples_per_probe();
     result.samples = sample.samples();
     result.broken_samples = sample.broken();
+    result.lost_share = sample.lost_share();
     state(result, sample, options);
     judge(result, options, sample.heavy_tailed());
     return result;

@@ -45,6 +45,7 @@ public:
     [[nodiscard]] std::size_t samples_per_batch() const { return per_batch_; }
     [[nodiscard]] std::size_t samples() const { return samples_; }
     [[nodiscard]] std::size_t broken() const { return broken_; }
+    [[nodiscard]] double lost() const { return lost_; }
 
     /// Finds the samples per batch for the wanted noise. A few single samples say little of a skewed noise, so the
     /// pilot is repeated with larger batches until these are within a factor 8 of what they call for.
@@ -141,9 +142,11 @@ public:
     [[nodiscard]] std::vector<probe_record> all(const P& probe, const E& run, const std::vector<std::size_t>& pixels,
                                                 const std::vector<std::size_t>& batches, std::uint64_t part) {
         std::vector<probe_record> records(pixels.size());
+        const double before = lost_by(probe);
         run(pixels.size(), [&](std::size_t i) {
             records[i] = draw_probe(probe, pixels[i], picture_.image.channels, batches[i], key(part, i));
         });
+        lost_ += lost_by(probe) - before;
         for (const probe_record& r : records) {
             samples_ += r.samples;
             broken_ += r.broken;
@@ -153,6 +156,15 @@ public:
 
 private:
     static constexpr std::size_t pilot_probes = 32;
+
+    template <typename P>
+    [[nodiscard]] static double lost_by(const P& probe) {
+        if constexpr (KnowsLoss<P>) {
+            return probe.lost();
+        } else {
+            return 0;
+        }
+    }
 
     [[nodiscard]] path_key key(std::uint64_t part, std::size_t i) const {
         return {options_.seed, mix(options_.stream, part), static_cast<std::uint64_t>(i)};
@@ -194,6 +206,7 @@ private:
     std::size_t per_batch_{1};
     std::size_t samples_{0};
     std::size_t broken_{0};
+    double lost_{0};
 };
 
 }  // namespace aglow::detail

@@ -103,6 +103,7 @@ struct audit_result {
     double largest_share{0};  ///< largest contribution of one probe to the error (or to the target, where that is more)
     std::size_t broken_pixels{0};
     std::size_t broken_samples{0};
+    double lost_share{0};  ///< of the probes' light, by broken answers of their host (see `KnowsLoss`)
     std::size_t probes{0};
     std::size_t samples_per_probe{0};
     std::size_t samples{0};  ///< all samples spent, the pilot's included

@@ -91,6 +91,8 @@ public:
     [[nodiscard]] std::size_t samples_per_probe() const { return per_batch_ * probe_batches; }
     [[nodiscard]] std::size_t samples() const { return samples_; }
     [[nodiscard]] std::size_t broken() const { return broken_; }
+    /// Share of the light that broken answers of the probes' host cost.
+    [[nodiscard]] double lost_share() const { return samples_ > 0 ? lost_ / static_cast<double>(samples_) : 0; }
 
     /// Whether the noise falls so slowly that its variance may be infinite, and no bound is known that says otherwise.
     [[nodiscard]] bool heavy_tailed() const { return slow_ && !options_.sample_bound; }
@@ -220,6 +222,7 @@ private:
     void count(const audit_draw<T>& draw) {
         samples_ += draw.samples();
         broken_ += draw.broken();
+        lost_ += draw.lost();
     }
 
     template <typename Of>
@@ -257,6 +260,7 @@ private:
     std::size_t per_batch_{1};
     std::size_t samples_{0};
     std::size_t broken_{0};
+    double lost_{0};
     std::uint64_t further_draws_{0};
     std::vector<probe_record> records_{};
     std::vector<probe_record> extra_{};

@@ -31,6 +31,13 @@ concept BatchProbe = requires(const P& probe, std::size_t pixel, std::uint64_t s
 template <typename P>
 concept Probe = SingleProbe<P> || BatchProbe<P>;
 
+/// A probe that knows how much light broken answers of its host have cost so far, as a number of samples: what an audit
+/// holds against it.
+template <typename P>
+concept KnowsLoss = requires(const P& probe) {
+    { probe.lost() } -> std::convertible_to<double>;
+};
+
 /// How many independent batches make one probe.
 inline constexpr std::size_t probe_batches = 8;
 

@@ -88,6 +88,7 @@ template <typename Advance, Probe P, Executor E = in_sequence>
         const double predicted = reached ? work : rule.predicted_work(work);
         const bool going_on = !options.progress || options.progress({rule.checks().back(), predicted});
         if (reached) { return end(until_status::reached, work); }
+        if (rule.is_broken()) { return end(until_status::broken, work); }
         if (!going_on) { return end(until_status::cancelled, work); }
         if (rule.hopeless()) { return end(until_status::unreachable, work); }
         if (out_of_work) { return end(until_status::out_of_work, work); }

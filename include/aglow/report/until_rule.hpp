@@ -79,7 +79,7 @@ public:
 
     /// Whether a claim is likely enough to hold to be made.
     [[nodiscard]] bool worth_a_claim(double work) const {
-        if (!claiming_ || sample_->heavy_tailed()) { return false; }
+        if (!claiming_ || sample_->heavy_tailed() || probes() < claim_outlook::least_probes) { return false; }
         const claim_outlook known = outlook(work);
         return known.seen * known.decay.at(work) <
                1.1 * certifiable_error(known, {work, probes(), noise_}, known.z.front());
@@ -91,6 +91,7 @@ public:
         how.confidence = 1 - miss(++claims_);
         const audit_result result = judged(*sample_, how);
         checks_.back().bound = result.mean_error_bound;
+        broken_ = has_broken_probes(result);
         return result;
     }
 
@@ -99,6 +100,9 @@ public:
         const double doubt = checks_.back().error_deviation / checks_.back().error;
         return distinct_ >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
     }
+
+    /// Whether the last claim failed, and every other will, because the probes' own answers are broken.
+    [[nodiscard]] bool is_broken() const { return broken_; }
 
     [[nodiscard]] decay_fit decay() const { return fit_decay(checks_for_fit_); }
 
@@ -237,6 +241,7 @@ private:
     double ratio_{1};    // standard deviation over mean of a probe's error
     bool blunt_{false};  // whether more samples took off that less than a quarter of what they should, in octaves
     bool claiming_{false};
+    bool broken_{false};
     std::size_t claims_{0};
 };
 
