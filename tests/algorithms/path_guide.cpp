@@ -1,5 +1,6 @@
 #include <aglow/algorithms/path_guide.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -59,6 +60,16 @@ void on_floor_and_ceiling(const Visit& visit) {
     }
 }
 
+/// All photons go one way.
+struct laser : support::no_light<S, float> {
+    vec3<float> to{0.43f, -0.2f, -0.4f};
+    template <Sampler R>
+    [[nodiscard]] emission<S, float> emit(R&) const {
+        const vec3<float> from{0, 0, 0.875f};
+        return {{from, glm::normalize(to - from)}, S{1}};
+    }
+};
+
 const auto room = support::room_with_balls<S, float>({0.7f, 0.5f, 0.3f}, {10, 12, 14});
 
 }  // namespace
@@ -72,6 +83,62 @@ TEST_CASE("path_guide: guided paths bring the same light as others, from everywh
         CAPTURE(way, plain[way].mean(), guided[way].mean());
         const double noise = std::hypot(plain[way].standard_error(), guided[way].standard_error());
         CHECK(std::abs(plain[way].mean() - guided[way].mean()) < 4 * noise);
+    }
+}
+
+TEST_CASE("path_guide: a guide made of a laser or of few photons or with extreme options changes noise alone") {
+    const std::vector<path_guide<float>> guides{{room.scene, laser{}},
+                                                {room.scene, room.light, {.cells = 1}},
+                                                {room.scene, room.light, {.photons = 100}},
+                                                {room.scene, room.light, {.gain = 1e300, .most = 0.25}},
+                                                {room.scene, room.light, {.gain = 1e-30}}};
+    const auto plain = looked_around(path_tracer{room.scene, room.light}, 40'000, 11);
+    for (std::size_t i = 0; i < guides.size(); ++i) {
+        const auto guided = looked_around(guided_path_tracer{room.scene, room.light, guides[i]}, 20'000, 12 + i);
+        for (std::size_t way = 0; way < plain.size(); ++way) {
+            CAPTURE(i, way, plain[way].mean(), guided[way].mean());
+            const double noise = std::hypot(plain[way].standard_error(), guided[way].standard_error());
+            CHECK(std::abs(plain[way].mean() - guided[way].mean()) < 4.5 * noise);
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("path_guide: a lamp that touches a mirror lights the floor as one twice as wide", "", float,
+                   double) {
+    using T = TestType;
+    toy_scene<T, T> scene{.rectangles = {{.corner = {0, -8, 0}, .u = {8, 0, 0}, .v = {0, 16, 0}, .normal = {0, 0, 1}},
+                                         {.corner = {0, -8, 0}, .u = {0, 16, 0}, .v = {0, 0, 8}, .normal = {1, 0, 0}}}};
+    scene.rectangles[0].made_of.diffuse = T(0.5);
+    scene.rectangles[1].made_of.mirror = T(1);
+    support::met_panel<T, T> lamp{};
+    lamp.shape = {.corner = {0, T(-0.25), 1},
+                  .u = {T(0.5), 0, 0},
+                  .v = {0, T(0.5), 0},
+                  .normal = {0, 0, -1},
+                  .made_of = {.glow = T(10)}};
+    scene.rectangles.push_back(lamp.shape);
+    const path_guide guide{scene, lamp};
+    REQUIRE(!guide.empty());
+    const guided_path_tracer tracer{scene, lamp, guide};
+    for (const double x : {0.004, 0.25, 1.0, 4.0}) {
+        // Lambert's sum over the edges of the lamp and its image, seen from the floor.
+        const vec3<double> place{x, 0.125, 0};
+        const vec3<double> corners[] = {{-0.5, -0.25, 1}, {0.5, -0.25, 1}, {0.5, 0.25, 1}, {-0.5, 0.25, 1}};
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const vec3<double> a = glm::normalize(corners[i] - place);
+            const vec3<double> b = glm::normalize(corners[(i + 1) % 4] - place);
+            sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(a, b)).z;
+        }
+        const double expected = 0.5 * 10 * std::abs(sum) / (2 * pi<double>);
+        const vec3<T> from{static_cast<T>(x + 0.5), T(0.125), T(0.5)};
+        const ray<T> eye{from, glm::normalize(vec3<T>(place) - from)};
+        sample_mean mean;
+        for (std::uint64_t i = 0; i < 100'000; ++i) {
+            mean.add(static_cast<double>(tracer(eye, random_numbers<T>{{.seed = 13, .path = i}}).value));
+        }
+        CAPTURE(x, mean.mean(), mean.standard_error(), expected);
+        CHECK(mean.agrees(expected, 4, 1e-6));
     }
 }
 
@@ -183,6 +250,72 @@ TEMPLATE_TEST_CASE("path_guide: guided directions follow their density, which in
     const auto found = statistics::chi2_test(counts, expected);
     CAPTURE(found.chi2, found.degrees);
     CHECK(found.p > 1e-4);
+}
+
+TEMPLATE_TEST_CASE("guide_lobes: lobes are chosen as often as their shares say, with shares of nothing among them", "",
+                   float, double) {
+    using T = TestType;
+    constexpr std::size_t most = detail::guide_lobes<T>::room;
+    const T third = T(1) / 3;
+    std::vector<std::array<T, most>> cases{{1}, {0, 1}, {T(0.5), 0, T(0.25), 0, 0, T(0.25)}, {third, third, 0, third}};
+    cases.push_back({});
+    cases.back().fill(T(1) / most);
+    cases.push_back({});
+    cases.back()[0] = cases.back()[most - 1] = T(0.5);
+    // By rounding less than 1 together, and nothing after the last.
+    cases.push_back({T(0.5), T(0.5) - 4 * std::numeric_limits<T>::epsilon()});
+    for (const auto& share : cases) {
+        const detail::guide_lobes<T> lobes{.share = share};
+        constexpr std::size_t count = 1 << 14;
+        std::array<double, most> chosen{};
+        for (std::size_t i = 0; i < count; ++i) { ++chosen[lobes.choose((T(i) + T(0.5)) / count)]; }
+        for (std::size_t i = 0; i < most; ++i) {
+            CAPTURE(i, share[i]);
+            CHECK(std::abs(chosen[i] - count * static_cast<double>(share[i])) <= 1);
+        }
+        CHECK(share[lobes.choose(0)] > 0);
+        CHECK(share[lobes.choose(1 - std::numeric_limits<T>::epsilon() / 2)] > 0);
+    }
+}
+
+TEMPLATE_TEST_CASE("guide_lobes: a cone ends for the density where it ends for the directions, however narrow", "",
+                   float, double) {
+    using T = TestType;
+    for (const T sine2 : {T(1e-4), T(1e-3), T(0.1), T(0.9)}) {
+        for (std::uint64_t i = 0; i < 2000; ++i) {
+            random_sampler<T> random{mix(10, i)};
+            const vec3<T> point = uniform_sphere(vec2<T>(random.next_2d()));
+            const vec3<T> to = uniform_sphere(vec2<T>(random.next_2d())) * (1 + 5 * T(random.next_1d()));
+            const vec3<T> centre = point + to;
+            detail::guide_lobes<T> lobes{.share = {1}};
+            lobes.x[0] = centre.x, lobes.y[0] = centre.y, lobes.z[0] = centre.z;
+            lobes.radius2[0] = sine2 * length2(to);
+            const T height = lobes.one_minus_cosine(sine2);
+            const T turn = T(random.next_1d());
+            const frame<T> around{glm::normalize(to)};
+            CAPTURE(sine2, i);
+            CHECK(lobes.pdf(point, around.to_world(uniform_cone({T(1), turn}, height * T(0.9998)))) > 0);
+            CHECK(lobes.pdf(point, around.to_world(uniform_cone({T(1), turn}, height * T(1.0002)))) == 0);
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("guide_lobes: from within a ball nearly half of all directions lead into it, from its centre none",
+                   "", float, double) {
+    using T = TestType;
+    detail::guide_lobes<T> lobes{.share = {1}};
+    lobes.x[0] = 1;
+    lobes.radius2[0] = T(0.25);
+    for (const T away : {T(1e-15), T(1e-3), T(0.49)}) {
+        const vec3<T> point{1, 0, away};
+        const auto wi = lobes.sample(point, 0, {T(0.5), T(0.25)});
+        REQUIRE(wi);
+        CHECK(wi->z < 0);
+        CHECK(static_cast<double>(lobes.pdf(point, *wi, 0)) == Approx(1 / (2 * pi<double> * 0.9)).epsilon(1e-5));
+    }
+    const vec3<T> centre{1, 0, 0};
+    CHECK(!lobes.sample(centre, 0, {T(0.5), T(0.25)}));
+    CHECK(lobes.pdf(centre, {0, 0, 1}) == 0);
 }
 
 TEST_CASE("path_guide: what a surface weighs its samples by, guided, still averages to its albedo") {

@@ -48,11 +48,15 @@ struct guide_lobes {
     [[nodiscard]] static T one_minus_cosine(T sine2) { return sine2 / (1 + std::sqrt(1 - sine2)); }
     [[nodiscard]] static T sine2(T radius2, T distance2) { return std::min(radius2, distance2 * T(0.99)) / distance2; }
 
-    /// The lobe that `u` in [0, 1) names.
+    /// The lobe that `u` in [0, 1) names, of those that have a share.
     [[nodiscard]] std::size_t choose(T u) const {
-        std::size_t i = 0;
-        while (i + 1 < room && share[i + 1] > 0 && u >= share[i]) { u -= share[i++]; }
-        return i;
+        std::size_t chosen = 0;
+        for (std::size_t i = 0; i < room && u >= 0; ++i) {
+            if (!(share[i] > 0)) { continue; }
+            chosen = i;
+            u -= share[i];
+        }
+        return chosen;
     }
 
     /// A direction from `point` into lobe `i`; empty where it has none, at the centre.
@@ -75,10 +79,12 @@ struct guide_lobes {
             const T dz = z[i] - point.z;
             const T d2 = dx * dx + dy * dy + dz * dz;
             const T along = dx * wi.x + dy * wi.y + dz * wi.z;
+            // Not d2 - along * along, of which little is left in a narrow cone.
+            const T aside2 = square(dx - along * wi.x) + square(dy - along * wi.y) + square(dz - along * wi.z);
             const T most = d2 * T(0.99);
             const T inner = radius2[i] < most ? radius2[i] : most;
             sines2[i] = inner / d2;
-            within[i] = along > 0 && along * along > d2 - inner ? 1u : 0u;
+            within[i] = along > 0 && aside2 < inner ? 1u : 0u;
         }
         if (own < room) { within[own] = 1; }
         T sum = 0;
@@ -223,7 +229,8 @@ private:
         for (auto* of : {&lobes.x, &lobes.y, &lobes.z}) { std::fill(of->begin() + kept, of->end(), far_); }
         std::fill(lobes.radius2.begin() + kept, lobes.radius2.end(), T(0));
         std::fill(lobes.share.begin() + kept, lobes.share.end(), T(0));
-        if (!(worth > 0)) { return; }
+        // Of photons that all landed at one point there is no density.
+        if (!(worth > 0 && is_finite(worth))) { return; }
         for (T& share : lobes.share) { share = share / worth; }
         const T more = static_cast<T>(options_.gain) * worth;
         lobes.chance = std::min(static_cast<T>(options_.most), more / (more + rest));
