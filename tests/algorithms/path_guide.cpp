@@ -407,6 +407,12 @@ TEST_CASE("path_guide: a scene without mirrors is not guided, and its paths are 
 }
 
 TEST_CASE("path_guide: settings out of range are refused by name") {
-    CHECK_THROWS_WITH((path_guide{room.scene, room.light, path_guide_options{.most = 1}}), "most: not between 0 and 1");
-    CHECK_THROWS_WITH((path_guide{room.scene, room.light, path_guide_options{.cells = 0}}), "cells: none");
+    const auto make = [](const path_guide_options& options) { return path_guide{room.scene, room.light, options}; };
+    CHECK_THROWS_WITH(make({.most = 1}), "most: not between 0 and 1");
+    // 1 in single precision, where nothing would be left to the surface.
+    CHECK_THROWS_WITH(make({.most = 1 - 1e-9}), "most: not between 0 and 1");
+    CHECK_THROWS_WITH(make({.gain = -1}), "gain: below 0");
+    CHECK_THROWS_WITH(make({.gain = std::numeric_limits<double>::quiet_NaN()}), "gain: below 0");
+    CHECK_THROWS_WITH(make({.cells = 0}), "cells: not between 1 and 256");
+    CHECK_THROWS_WITH(make({.cells = 257}), "cells: not between 1 and 256");
 }

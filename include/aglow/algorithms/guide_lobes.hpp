@@ -24,7 +24,7 @@ namespace aglow {
 struct path_guide_options {
     std::size_t photons{5'000};  ///< caustic ones; half as many of those that were reflected once more, and twice as
                                  ///< many of all others, to know how much they are beside
-    std::uint32_t cells{32};     ///< along the longest side of the scene
+    std::uint32_t cells{32};     ///< along the longest side of the scene, up to 256
     double gain{2};     ///< how many times its share of the light is the chance of a ray to be guided, where few are
     double most{0.75};  ///< the largest such chance, below 1
     std::uint64_t seed{0};

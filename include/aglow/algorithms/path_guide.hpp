@@ -39,8 +39,10 @@ public:
     /// threads of `run`. Throws `std::invalid_argument` for options out of range.
     template <Scene World, Emitter Lights, Executor Run = in_sequence>
     path_guide(const World& scene, const Lights& lights, const path_guide_options& options = {}, const Run& run = {}) {
-        if (!(options.most > 0 && options.most < 1)) { throw std::invalid_argument("most: not between 0 and 1"); }
-        if (options.cells == 0) { throw std::invalid_argument("cells: none"); }
+        const T most = static_cast<T>(options.most);
+        if (!(most > 0 && most < 1)) { throw std::invalid_argument("most: not between 0 and 1"); }
+        if (!(options.gain >= 0)) { throw std::invalid_argument("gain: below 0"); }
+        if (options.cells == 0 || options.cells > 256) { throw std::invalid_argument("cells: not between 1 and 256"); }
         if (!plan_for(scene).caustic_map) { return; }
         const auto maps = trace_photons(scene, lights,
                                         {.caustic = options.photons,
