@@ -61,7 +61,7 @@ double error_share(std::string text) {
     double x = 0;
     if (!CLI::detail::lexical_cast(text, x)) { x = 0; }
     x = percent ? x / 100 : x;
-    if (!(x >= 1e-4 && x <= 1)) { throw usage_error("--until wants an error from 0.01% to 100%, with its sign: 5%"); }
+    if (!(x >= 1e-4 && x <= 1)) { throw usage_error("--until wants an error from 0.01% to 100%: 5% or 0.05"); }
     return x;
 }
 
