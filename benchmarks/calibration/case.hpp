@@ -18,6 +18,7 @@
 #include <aglow/core/sobol.hpp>
 #include <aglow/report/audit.hpp>
 
+#include "common/audited_film.hpp"
 #include "common/light_set.hpp"
 #include "common/scene.hpp"
 #include "common/scenes/registry.hpp"
@@ -169,23 +170,10 @@ private:
 
     /// Pixels with another primitive within two of them.
     void find_features() {
-        const std::size_t n = effort_.pixels;
-        std::vector<std::uint32_t> ids(n * n);
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            const auto hit =
-                scene_.intersect(eye()({static_cast<float>(i % n) + 0.5f, static_cast<float>(i / n) + 0.5f}));
-            ids[i] = hit ? hit->primitive : ~0u;
-        }
-        feature_.assign(n * n, 0);
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            const std::size_t x = i % n;
-            const std::size_t y = i / n;
-            for (std::size_t v = y < 2 ? 0 : y - 2; v <= std::min(n - 1, y + 2); ++v) {
-                for (std::size_t u = x < 2 ? 0 : x - 2; u <= std::min(n - 1, x + 2); ++u) {
-                    if (ids[v * n + u] != ids[i]) { feature_[i] = 1; }
-                }
-            }
-        }
+        feature_ = host::feature_pixels(effort_.pixels, effort_.pixels, [this](std::size_t x, std::size_t y) {
+            const auto hit = scene_.intersect(eye()({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
+            return hit ? hit->primitive : ~0u;
+        });
     }
 
     /// By more photons and samples than an audit takes, and by the true light.
