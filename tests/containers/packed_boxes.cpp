@@ -1,6 +1,7 @@
 #include <aglow/containers/packed_boxes.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <aglow/core/random.hpp>
@@ -65,4 +66,6 @@ TEST_CASE("packed_boxes: a box without extent is found where it is, and nothing 
     CHECK((packed.near({{1, 2, 3}, {1, 2, 3}}) & 1u) == 1);
     CHECK(packed.near({{2.5f, 2, 3}, {3, 2, 3}}) == 0);
     CHECK(packed.near({{-1, 2, 3}, {0.5f, 2, 3}}) == 0);
+    const float endless = std::numeric_limits<float>::infinity();
+    CHECK((packed.near({vec3<float>{-endless}, vec3<float>{endless}}) & 1u) == 1);
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <aglow/core/bounds.hpp>
@@ -29,7 +30,8 @@ struct packed_boxes {
         origin = all.low;
         const vec3<T> extent = all.extent();
         for (int axis = 0; axis < 3; ++axis) {
-            steps_per_length[axis] = extent[axis] > 0 ? T(255) / extent[axis] : T(0);
+            // Never 0: an endless search times that would be no number.
+            steps_per_length[axis] = extent[axis] > 0 ? T(255) / extent[axis] : std::numeric_limits<T>::min();
             for (std::size_t i = 0; i < boxes.size(); ++i) {
                 low[axis][i] = step((boxes[i].low[axis] - origin[axis]) * steps_per_length[axis]);
                 high[axis][i] = step((boxes[i].high[axis] - origin[axis]) * steps_per_length[axis]);
