@@ -213,6 +213,31 @@ TEMPLATE_TEST_CASE("octree: coordinates of 1e12 with radii of 1e-6 are answered 
     CHECK(wrong_answers_in_any_state(spheres, 17, 400) == 0);
 }
 
+TEMPLATE_TEST_CASE("octree: spheres smaller than the last bit of their place are found there, alone or in a row", "",
+                   float, double) {
+    using T = TestType;
+    const T lost = std::numeric_limits<T>::epsilon();
+    const T endless = std::numeric_limits<T>::infinity();
+    for (const int count : {1, 40, 400}) {
+        octree<int, T> tree;
+        std::vector<int> all;
+        for (int i = 0; i < count; ++i) {
+            tree.insert(i, {T(1000), T(1000 + i % 40), T(-1000)}, lost);
+            all.push_back(i);
+        }
+        for (int i = 0; i < 2; ++i) {
+            CAPTURE(count, i);
+            CHECK(covering(tree, vec3<T>{1000, 1000, -1000}).size() == static_cast<std::size_t>((count + 39) / 40));
+            CHECK(covering(tree, vec3<T>{1000, 999, -1000}).empty());
+            CHECK(covering(tree, vec3<T>{0}).empty());
+            CHECK(within(tree, vec3<T>{1000, 1000, -1000}, endless) == all);
+            CHECK(within(tree, vec3<T>{0}, endless) == all);
+            CHECK(within(tree, vec3<T>{1000, 1039, -1000}, T(39)) == all);
+            tree.settle();
+        }
+    }
+}
+
 TEST_CASE("octree: the largest coordinates there are can be stored and found", "[octree]") {
     constexpr float most = std::numeric_limits<float>::max();
     octree<int> tree;

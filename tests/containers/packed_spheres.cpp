@@ -98,6 +98,25 @@ TEST_CASE("packed_spheres: a thousand spheres at one place are found in few byte
     CHECK(index.bytes() < 100000);
 }
 
+TEST_CASE("packed_spheres: spheres farther apart than a number can be do no harm, few or many") {
+    const float most = std::numeric_limits<float>::max();
+    for (const std::uint32_t count : {2u, 3000u}) {
+        std::vector<stored_sphere<float>> spheres;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float end = i % 2 == 0 ? most : -most;
+            spheres.push_back({{end, end * (float(i) / float(count)), 0}, limit2_of(1e15f), i});
+        }
+        const packed_spheres<float> index{spheres};
+        int wrong = 0;
+        for (const auto& s : spheres) {
+            const auto found = covering(index, s.centre);
+            const auto right = brute_force(spheres, s.centre);
+            wrong += !std::includes(right.begin(), right.end(), found.begin(), found.end());
+        }
+        CHECK(wrong == 0);
+    }
+}
+
 TEST_CASE("packed_spheres: places asked about in step get what brute force finds for each, in a crowd too") {
     auto crowd = random_spheres<float>(4000, 1, 6);
     for (auto& s : crowd) { s = {s.centre * 0.001f, 0.25f, s.item}; }

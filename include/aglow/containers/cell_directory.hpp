@@ -25,7 +25,8 @@ class cell_directory {
 public:
     cell_directory() = default;
 
-    /// Over `boxes`. `meets(number, cell)` may sharpen a box: false if what is in it has nothing to do with that cell.
+    /// Over `boxes`; lists none that together are wider than a number can be. `meets(number, cell)` may sharpen a box:
+    /// false if what is in it has nothing to do with that cell.
     template <typename Meets>
     cell_directory(const std::vector<bounds<T>>& boxes, const Meets& meets);
 
@@ -71,6 +72,8 @@ private:
     using brick = std::array<std::uint32_t, 8>;
 
     static constexpr int depth = 20;
+    // The power of two that is the most cells a length can have, so that a cell has a length.
+    static constexpr int finest = std::numeric_limits<T>::max_exponent - 2;
     static constexpr std::uint32_t leaf = 0x80000000u;
     // A leaf with more boxes than this is divided, if that helps.
     static constexpr std::size_t enough = 10;
@@ -204,12 +207,14 @@ private:
 template <typename T>
 template <typename Meets>
 cell_directory<T>::cell_directory(const std::vector<bounds<T>>& boxes, const Meets& meets) {
-    for (const bounds<T>& b : boxes) { all_.add(b); }
-    const T widest = max_abs(all_.extent());
-    longest_ = boxes.size();
-    if (!(widest > 0 && widest < std::numeric_limits<T>::max())) { return; }
-    longest_ = 0;
-    cells_per_length_ = std::ldexp(T(1), depth - 1 - std::ilogb(widest));
+    bounds<T> all;
+    for (const bounds<T>& b : boxes) { all.add(b); }
+    if (all.empty()) { return; }
+    // Boxes that are all one point, as tiny spheres far from the origin are, lie in a cell of any size.
+    const T widest = std::max(max_abs(all.extent()), std::numeric_limits<T>::min());
+    if (!(widest < std::numeric_limits<T>::max())) { return; }
+    all_ = all;
+    cells_per_length_ = std::ldexp(T(1), std::min(depth - 1 - std::ilogb(widest), finest));
     std::vector<std::uint32_t> numbers(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) { numbers[i] = static_cast<std::uint32_t>(i); }
     bricks_.emplace_back();  // brick 0 and list 0 mean none

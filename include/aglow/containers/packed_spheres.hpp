@@ -30,6 +30,8 @@ template <typename T>
 class packed_spheres {
 public:
     packed_spheres() = default;
+    /// Expects finite centres, the differences of which are finite, and a `limit2` above 0; spheres that lie farther
+    /// apart may not be found.
     explicit packed_spheres(std::vector<stored_sphere<T>> spheres) : size_{spheres.size()} {
         std::vector<bounds<T>> boxes;
         for (const std::span<stored_sphere<T>> alike : detail::by_size(spheres)) {
