@@ -30,8 +30,9 @@ struct packed_boxes {
         origin = all.low;
         const vec3<T> extent = all.extent();
         for (int axis = 0; axis < 3; ++axis) {
-            // Never 0: an endless search times that would be no number.
-            steps_per_length[axis] = extent[axis] > 0 ? T(255) / extent[axis] : std::numeric_limits<T>::min();
+            // Never 0: an endless length times that would be no number.
+            steps_per_length[axis] = std::numeric_limits<T>::min();
+            if (extent[axis] > 0) { steps_per_length[axis] = std::max(steps_per_length[axis], T(255) / extent[axis]); }
             for (std::size_t i = 0; i < boxes.size(); ++i) {
                 low[axis][i] = step((boxes[i].low[axis] - origin[axis]) * steps_per_length[axis]);
                 high[axis][i] = step((boxes[i].high[axis] - origin[axis]) * steps_per_length[axis]);
