@@ -49,4 +49,8 @@ TEST_CASE("callback: a copy shares what the callable holds, and it is freed with
 TEST_CASE("callback: what cannot be asked is refused") {
     CHECK_FALSE(std::is_constructible_v<callback<double>, int>);
     CHECK_FALSE(std::is_constructible_v<callback<double>, bool (*)(const char*)>);
+    struct stage {
+        bool done;
+    };
+    CHECK_FALSE(std::is_constructible_v<callback<const stage&>, bool stage::*>);
 }

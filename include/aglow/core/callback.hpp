@@ -11,13 +11,19 @@ namespace aglow {
 /// Any callable that answers an `Argument` with yes or no, or none. Copies share what the callable holds.
 template <typename Argument>
 class callback {
+    /// Whether an `F` is called by brackets: `std::predicate` would take members too, which are not.
+    template <typename F>
+    static constexpr bool answers = requires(F& answer, Argument argument) {
+        { answer(argument) } -> std::convertible_to<bool>;
+    };
+
 public:
     /// No callable.
     callback() = default;
 
     /// Takes `answer`, which may itself be empty where it can be: a null pointer or an empty `std::function`.
     template <typename F>
-        requires(!std::same_as<std::remove_cvref_t<F>, callback> && std::predicate<std::decay_t<F>&, Argument>)
+        requires(!std::same_as<std::remove_cvref_t<F>, callback> && answers<std::decay_t<F>>)
     callback(F&& answer) {
         using held = std::decay_t<F>;
         held given(std::forward<F>(answer));
