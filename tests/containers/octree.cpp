@@ -450,7 +450,15 @@ TEST_CASE("octree: moved, it takes its items along and leaves an empty one", "[o
     octree<int> from = octree_of(spheres);
     octree<int> to{std::move(from)};
     CHECK(wrong_answers(to, spheres, 29, 50) == 0);
-    from = octree<int>{};
+    from = std::move(to);
+    CHECK(wrong_answers(from, spheres, 29, 50) == 0);
+    CHECK(to.empty());
+    octree<int> other;
+    other.insert(0, vec3<float>{5}, 1.0f);
+    other = std::move(from);
+    CHECK(wrong_answers(other, spheres, 29, 50) == 0);
+    CHECK(from.empty());
+    CHECK(covering(from, vec3<float>{5}).empty());
     from.insert(0, vec3<float>{5}, 1.0f);
     CHECK(covering(from, vec3<float>{5}) == std::vector<int>{0});
 }

@@ -70,7 +70,8 @@ public:
     /// Takes all items. Expects that nobody searches either octree meanwhile; so does the assignment.
     octree(octree&& other) noexcept { swap(other); }
     octree& operator=(octree&& other) noexcept {
-        swap(other);
+        octree gone{std::move(other)};
+        swap(gone);
         return *this;
     }
     ~octree() = default;
