@@ -1,6 +1,8 @@
 // The smallest complete surface: matte on both sides of its geometry, reflecting a fraction of what arrives.
 #pragma once
 
+#include <cmath>
+#include <concepts>
 #include <optional>
 
 #include <aglow/concepts/surface.hpp>

@@ -34,7 +34,7 @@ public:
     /// The prime whose powers stratify `dimension`. Expects `dimension` < `dimensions()`.
     [[nodiscard]] std::uint32_t base(std::size_t dimension) const { return axes_[dimension].base; }
 
-    /// Coordinate `dimension` of point `index`, in [0, 1), never 1: a multiple of 2^-24 (float), or right to 2^-51
+    /// Coordinate `dimension` of point `index`, in [0, 1), never 1: a multiple of 2^-24 (float), or right to 2^-50
     /// (double). Any base^k points in a row have one in each base^k-th of [0, 1), to that precision.
     /// From `dimensions()` on: a hash of (seed, pass, index, dimension).
     template <std::floating_point T>
@@ -57,7 +57,7 @@ private:
         std::uint32_t base;
         std::uint32_t block;
         std::uint32_t reciprocal;  ///< floor(2^32 / block)
-        std::uint32_t places;      ///< blocks that fit into 63 bits; those beyond are below the last bit of a double
+        std::uint32_t places;      ///< blocks that fit into 63 bits; those beyond stand below 2^-50
         std::size_t table;         ///< of the first place; each place has `block` entries
         std::size_t ending;        ///< after no place; each place more has the next
         double step;               ///< block^-places

@@ -34,7 +34,7 @@ template <std::floating_point T>
 
 /// 1 / sqrt(x) within two ulp, exact for powers of four, and finite for 0; too small for what is less than 2^30 times
 /// the least normal number. Unlike std::sqrt it has no errno to set, so that a compiler may work out a row of them side
-/// by side. Expects `x` >= 0.
+/// by side. Expects finite `x` >= 0.
 template <std::floating_point T>
 [[nodiscard]] constexpr T inverse_root(T x) {
     using bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
@@ -47,7 +47,8 @@ template <std::floating_point T>
     return y + y * (T(0.5) * (1 - a * y * y));
 }
 
-/// sqrt(x) within three ulp, with no errno to set; too small where `inverse_root` is, and 0 for 0. Expects `x` >= 0.
+/// sqrt(x) within three ulp, with no errno to set; too small where `inverse_root` is, and 0 for 0. Expects finite
+/// `x` >= 0.
 template <std::floating_point T>
 [[nodiscard]] constexpr T root(T x) {
     return x * inverse_root(x);

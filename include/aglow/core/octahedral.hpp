@@ -18,7 +18,7 @@ class basic_octahedral {
 public:
     basic_octahedral() = default;
 
-    /// Expects `v` of any length but zero, finite.
+    /// Expects `v` of any length but zero, with a finite |x| + |y| + |z|.
     template <typename T>
     explicit basic_octahedral(const vec3<T>& v) {
         const T sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);

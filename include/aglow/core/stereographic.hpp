@@ -15,7 +15,7 @@ class stereographic {
 public:
     stereographic() = default;
 
-    /// Expects `v` of any length but zero, finite.
+    /// Expects `v` of any length whose square is a normal number.
     template <typename T>
     explicit stereographic(const vec3<T>& v) {
         const T scale = 1 / (std::sqrt(length2(v)) + std::abs(v.z));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/vec.hpp>
@@ -78,7 +79,7 @@ template <typename T>
     return {radius * std::cos(angle), radius * std::sin(angle), 1 - h};
 }
 
-/// Per steradian, inside the cone.
+/// Per steradian, inside the cone, which is no single direction.
 template <typename T>
 [[nodiscard]] constexpr T uniform_cone_pdf(T one_minus_cosine) {
     return 1 / (2 * pi<T> * one_minus_cosine);
