@@ -362,6 +362,59 @@ TEST_CASE("kd_tree: positions that are not finite are left out and counted", "[k
     CHECK(tree_of(bad).dropped() == 5);
 }
 
+TEMPLATE_TEST_CASE("kd_tree: positions are kept and found as far out as squared distances are finite, and no farther",
+                   "[kd_tree]", float, double) {
+    using T = TestType;
+    // Of two points at opposite corners the squared distance is 12/16 of the largest number.
+    const T far = std::sqrt(std::numeric_limits<T>::max()) / 4;
+    auto points = cloud<T>("cube", 200);
+    for (int corner = 0; corner < 8; ++corner) {
+        points.push_back({corner & 1 ? far : -far, corner & 2 ? far : -far, corner & 4 ? far : -far});
+    }
+    const auto tree = tree_of(points);
+    CHECK(tree.dropped() == 0);
+    kd_scratch<T> scratch;
+    for (const vec3<T>& q : {points[0], points[200], points[207]}) {
+        const auto truth = brute_force(points, q, points.size(), std::numeric_limits<T>::infinity(), all_of_them);
+        CHECK(truth.size() == points.size());
+        CHECK(sorted(tree, tree.nearest(q, points.size(), scratch)) == truth);
+        CHECK(sorted(tree, tree.nearest(q, 3, scratch)) == std::vector<item<T>>(truth.begin(), truth.begin() + 3));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        points[static_cast<std::size_t>(axis)][axis] = -std::nextafter(far, far * 2);
+    }
+    CHECK(tree_of(points).dropped() == 3);
+}
+
+TEST_CASE("kd_tree: in an even crowd a search asks about few more than it wants, and seldom again", "[kd_tree]") {
+    constexpr std::size_t searches = 1000;
+    kd_scratch<float> scratch;
+    for (const std::string shape : {"cube", "plane", "tilted plane"}) {
+        const auto points = cloud<float>(shape, 20'000);
+        const auto tree = tree_of(points);
+        for (const std::size_t k : {std::size_t{5}, std::size_t{20}, std::size_t{50}}) {
+            std::size_t asked = 0, begun_again = 0;
+            std::vector<std::size_t> asked_by(points.size(), searches);
+            for (std::size_t i = 0; i < searches; ++i) {
+                bool twice = false;
+                const auto accept = [&](kd_slot slot) {
+                    ++asked;
+                    twice = twice || asked_by[slot] == i;
+                    asked_by[slot] = i;
+                    return true;
+                };
+                REQUIRE(tree.nearest(points[i * 17], k, scratch, {}, accept).size() == k);
+                begun_again += twice;
+            }
+            CAPTURE(shape, k);
+            // Three deviations of the count more than asked for are wanted within the first radius.
+            const double wanted = double(k) + 3 * std::sqrt(double(k)) + 1;
+            CHECK(double(asked) / searches < 1.25 * wanted);
+            CHECK(begun_again < searches / 5);
+        }
+    }
+}
+
 TEST_CASE("kd_tree: a tree of nothing finds nothing", "[kd_tree]") {
     kd_scratch<float> scratch;
     for (const kd_tree<float>& tree : {kd_tree<float>{}, tree_of(std::vector<vec3<float>>{})}) {

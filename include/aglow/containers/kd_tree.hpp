@@ -3,7 +3,7 @@
 // Halved at the exact median of the widest side and laid out without pointers: sixteen children a node, full leaves. A
 // search guesses the radius from how crowded the place is, collects all within, and selects; a wrong guess costs time
 // and never changes the answer. All that a search returns has one order and one set of bits, whatever the guess, the
-// number of threads and the instruction set: AVX-512, AVX2 or SSE4 are used where the machine has them, under any
+// number of threads and the instruction set: AVX-512, AVX2 or SSE are used where the machine has them, under any
 // flags.
 #pragma once
 
@@ -92,7 +92,7 @@ public:
 
     /// A tree of `position(item)` for every item. Positions that are not finite, or so far out that squared distances
     /// would not be (beyond 4e18 for float), are left out and counted in `dropped()`. The same tree for any executor.
-    /// O(n log n), with 40 bytes more per point while it runs (float). Throws std::length_error for 2^32 - 64
+    /// O(n log n), with 40 bytes more per point while it runs (float). Throws std::length_error for 2^32 - 65
     /// items or more.
     template <detail::NumberedItems Items, typename Position, Executor E = in_sequence>
         requires std::convertible_to<std::invoke_result_t<const Position&, detail::item_of<Items>>, vec3<T>> kd_tree(
@@ -120,7 +120,7 @@ public:
                                            kd_reach<T> reach = {}, Accept&& accept = {}) const;
 
     /// As `nearest` for every point, faster where points are many: `visit(i, neighbours)` is called in order of i, and
-    /// `accept(i, slot)` says what counts for point i.
+    /// `accept(i, slot)` says what counts for point i. Expects that neither searches with this scratch.
     template <std::invocable<std::size_t, const kd_neighbours<T>&> Visit>
     void nearest(std::span<const vec3<T>> points, std::size_t k, kd_scratch<T>& scratch, kd_reach<T> reach,
                  Visit&& visit) const {
@@ -150,6 +150,11 @@ private:
         const T limit = std::min(reach.radius2, std::numeric_limits<T>::max());
         const auto count = limit > 0 ? static_cast<std::uint32_t>(std::min<std::size_t>(k, size())) : 0;
         return {count, limit, reach.hint2};
+    }
+
+    /// So many candidates that the search seldom has to sift them; of all there are, none has to go.
+    [[nodiscard]] std::size_t room_for(task what) const {
+        return std::min(2 * std::size_t{what.count} + 1024, size() + detail::kd_leaf_size);
     }
 
     /// Of a thousand points at one place a search for k can use k, unless it may refuse them.
@@ -207,7 +212,7 @@ kd_neighbours<T> kd_tree<T>::nearest(const vec3<T>& point, std::size_t k, kd_scr
                                      Accept&& accept) const {
     const task what = task_of(k, reach);
     if (what.count == 0) { return {{}, {}, reach.radius2}; }
-    scratch.found_.reserve(2 * std::size_t{what.count} + 1024);
+    scratch.found_.reserve(room_for(what));
     detail::kd_probe<T>& probe = scratch.probes_.front();
     probe.point = point;
     probe.enough = enough<Accept>(what);
@@ -224,7 +229,7 @@ void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scra
         for (std::size_t i = 0; i < points.size(); ++i) { visit(i, kd_neighbours<T>{{}, {}, reach.radius2}); }
         return;
     }
-    scratch.found_.reserve(2 * std::size_t{what.count} + 1024);
+    scratch.found_.reserve(room_for(what));
     scratch.probes_.resize(group);
     std::array<T, group> radius2;
     for (std::size_t first = 0; first < points.size(); first += group) {
