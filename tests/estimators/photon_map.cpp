@@ -270,6 +270,39 @@ TEST_CASE("photon_map: one photon asked for is a density of two") {
     CHECK(map.irradiance({0, 0, 0}, upf, {.count = 1}).value.x > 0);
 }
 
+TEST_CASE("photon_map: a shrunk estimate is spread over that share of the radius") {
+    const photon_map<glm::vec3, float> map{colourful(2, 1)};
+    const auto whole = map.irradiance({0, 0, 0}, upf);
+    CHECK(map.irradiance({0, 0, 0}, upf, {.shrink = 0.5}).radius == 0.5f * whole.radius);
+}
+
+TEST_CASE("photon_map: without a count, a shrunk radius is that of the search") {
+    const photon_map<glm::vec3, float> map{colourful(2, 1)};
+    for (const float largest : {0.0f, 0.5f}) {
+        const float whole = largest > 0 ? largest : map.natural_radius(50);
+        const auto shrunk = map.irradiance({0, 0, 0}, upf, {.count = 0, .max_radius = largest, .shrink = 0.25});
+        const auto narrow = map.irradiance({0, 0, 0}, upf, {.count = 0, .max_radius = 0.25 * whole});
+        CHECK(shrunk.radius == narrow.radius);
+        CHECK(shrunk.count == narrow.count);
+        CHECK(shrunk.value == narrow.value);
+        CHECK(narrow.count > 0);
+    }
+}
+
+TEST_CASE("photon_map: where nobody came, as much is feared as three of the brightest photons, or bunches, make") {
+    std::vector<landed_photon<float, float>> photons(40, on_floor<float, float>(0, 0, 0.5f));
+    photons.push_back(on_floor<float, float>(0, 0, 2));
+    for (const float faint : {1.0f, 0x1p-120f}) {
+        photon_map<float, float> map{photons, faint};
+        const auto nobody = [&] { return map.irradiance({5, 0, 0}, upf, {.max_radius = 0.5}); };
+        CHECK(nobody().count == 0);
+        CHECK(nobody().value == 0);
+        CHECK(nobody().error == Approx(3 * 2 * faint / (pi<float> * 0.25f)));
+        map.come_in_bunches(40);
+        CHECK(nobody().error == Approx(40 * 3 * 2 * faint / (pi<float> * 0.25f)));
+    }
+}
+
 TEST_CASE("photon_map: scaling the scene by a power of two scales the answer exactly") {
     const photon_map<glm::vec3, float> map{colourful(2, 1e-3f)};
     for (const density_options& options : {density_options{}, density_options{.count = 7, .shrink = 0.5},

@@ -13,8 +13,8 @@ struct density_options {
     std::uint32_t count{50};  ///< photons of an estimate: the noise is about 1.15 / sqrt(count); one alone tells no
                               ///< density, so at least 2; 0 for all within the radius
     double max_radius{0};     ///< search radius in scene units; 0 for one that the map finds from its own density
-    double shrink{
-        1};  ///< share of the k-th photon's distance that is used; below 1 for progressive passes, no bias added
+    double shrink{1};  ///< share of the k-th photon's distance, or of the search radius where that is nearer, that
+                       ///< is used; below 1 for progressive passes, no bias added
     kernel_shape kernel{kernel_shape::epanechnikov};
     double plane_tolerance{0.2};  ///< how far off the tangent plane a photon may be, as a share of its distance
     double normal_cosine{0.7};    ///< least cosine between the normals here and at the photon

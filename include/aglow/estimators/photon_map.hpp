@@ -237,7 +237,8 @@ private:
     [[nodiscard]] density_estimate<S, T> within(const vec3<T>& point, const density_options& options, Accept& accept,
                                                 Weigh& weigh) const {
         const T reach = options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(50);
-        return over(point, square(std::max(reach, least_radius(reach))), options.kernel, accept, weigh);
+        const T radius = std::max(reach * static_cast<T>(options.shrink), least_radius(reach));
+        return over(point, square(radius), options.kernel, accept, weigh);
     }
 
     /// All photons within one radius. Seldom asked, hence with any kernel: a search compiled for each is long.
