@@ -1,7 +1,10 @@
 #include <aglow/estimators/irradiance_record.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include <aglow/core/random.hpp>
 
@@ -111,6 +114,51 @@ TEST_CASE("irradiance_record: within the radius the change is at most the irradi
     }
 }
 
+TEMPLATE_TEST_CASE("irradiance_record: along a diagonal, too, the change is at most the irradiance", "", float,
+                   double) {
+    using T = TestType;
+    auto e = estimate_at<vec3<T>, T>({0, 0, 0}, {0, 0, 1}, {1, 1, 1});
+    e.gradients.translation = {vec3<T>{30}, vec3<T>{30}};
+    const irradiance_record<vec3<T>, T> r{e, {.radius = 1}};
+    CHECK(at(r, vec3<T>{T(0.7), T(0.7), 0}, vec3<T>{0, 0, 1}).x == Approx(1 + std::sqrt(2) * 0.7).epsilon(1e-3));
+}
+
+TEMPLATE_TEST_CASE("irradiance_record: with another radius it has the same slopes", "", float, double) {
+    using T = TestType;
+    auto e = estimate_at<vec3<T>, T>({0, 0, 0}, {0, 0, 1}, {1, 2, 3});
+    e.gradients.translation = {vec3<T>{T(0.5)}, vec3<T>{T(-0.25)}};
+    const irradiance_record<vec3<T>, T> r{e, {.radius = 1}};
+    const vec3<T> there{T(0.2), T(0.1), 0};
+    const vec3<T> moved = at(r.with_radius(T(0.25)), there, vec3<T>{0, 0, 1});
+    CHECK(glm::length(moved - at(r, there, vec3<T>{0, 0, 1})) < T(1e-3));
+}
+
+TEST_CASE("irradiance_record: gradients, ellipse and rays do not depend on the axes they are told in") {
+    auto e = estimate_at<vec3<float>, float>({0, 0, 0}, {0.3f, -0.2f, 0.9f}, {1, 1, 1});
+    e.gradients.translation = {vec3<float>{0.5f}, vec3<float>{0.1f}};
+    e.gradients.rotation = {vec3<float>{0.2f}, vec3<float>{-0.4f}};
+    e.rejected = 30;
+    const vec2<float> shorter{0.6f, 0.8f};
+    const irradiance_record<vec3<float>> r{e, {.radius = 0.5f, .ratio = 2, .axis = shorter}};
+    CHECK(r.rays() == 370);
+    auto turned = e;
+    const float c = std::cos(1.1f);
+    const float s = std::sin(1.1f);
+    turned.axes.x = e.axes.x * c + e.axes.y * s;
+    turned.axes.y = e.axes.y * c - e.axes.x * s;
+    const auto in_turned = [&](const auto& v) {
+        return std::remove_cvref_t<decltype(v)>{v.x * c + v.y * s, v.y * c + v.x * -s};
+    };
+    turned.gradients = {in_turned(e.gradients.translation), in_turned(e.gradients.rotation)};
+    const irradiance_record<vec3<float>> q{turned, {.radius = 0.5f, .ratio = 2, .axis = in_turned(shorter)}};
+    for (const vec3<float> way : {vec3<float>{0.3f, 0.1f, 0}, vec3<float>{-0.1f, 0.3f, 0}}) {
+        const vec3<float> point = e.axes.to_world(way);
+        const vec3<float> n = glm::normalize(e.axes.z + e.axes.x * 0.1f - e.axes.y * 0.05f);
+        CHECK(glm::length(at(r, point, n) - at(q, point, n)) < 1e-3f);
+        CHECK(r.distance2(r.local(point, r.axes())) == Approx(q.distance2(q.local(point, q.axes()))).epsilon(1e-3));
+    }
+}
+
 TEST_CASE("irradiance_record: extrapolation towards darkness stops above zero and keeps the hue") {
     auto e = estimate_at<vec3<float>, float>({0, 0, 0}, {0, 0, 1}, {4, 2, 1});
     e.gradients.rotation = {{-200, -100, -50}, {0, 0, 0}};
@@ -190,6 +238,22 @@ TEST_CASE("irradiance_record: its ellipse has the axes it was given, and no poin
     }
 }
 
+TEST_CASE("irradiance_record: nobody is inside beyond the longest radius, however long an ellipse is asked for") {
+    const auto e = estimate_at<float, float>({0, 0, 0}, {0, 0, 1}, 1);
+    for (const float ratio : {9.f, 9.9f, 10.f, 20.f, 1e3f, 1e30f}) {
+        for (const float angle : {0.f, 0.7f, 0.785398f, 1.5f}) {
+            const vec2<float> axis{std::cos(angle), std::sin(angle)};
+            const irradiance_record<float> r{e, {.radius = 0.25f, .ratio = ratio, .axis = axis}};
+            const frame<float> axes = r.axes();
+            const float end = r.longest_radius();
+            CAPTURE(ratio, angle, end);
+            CHECK(end == Approx(0.25f * std::min(ratio, 9.9f)).epsilon(0.01));
+            const vec3<float> tip = e.axes.to_world({-axis.y * end, axis.x * end, 0});
+            CHECK_FALSE(r.distance2(r.local(e.position + tip, axes)) < 1 - 1e-3f);
+        }
+    }
+}
+
 TEST_CASE("irradiance_record: with_radius keeps light and slope, and the cap grows with the radius") {
     auto e = estimate_at<vec3<float>, float>({0, 0, 0}, {0, 0, 1}, {1, 1, 1});
     e.gradients.translation.x = {0.5f, 1, -0.25f};
@@ -254,6 +318,24 @@ TEST_CASE("reach_of: the Hessian's ellipse has the total error that was asked fo
         CHECK(s.radius == std::ldexp(r.radius, k));
         CHECK(s.ratio == r.ratio);
     }
+}
+
+TEST_CASE("reach_of: no record reaches beyond where its gradient ends at zero, along each axis, by either rule") {
+    auto e = estimate_at<vec3<double>, double>({0, 0, 0}, {0, 0, 1}, {1, 4, 2});
+    // Relative to the largest band, 8 / 4 along x and 2 / 4 along y.
+    e.gradients.translation = {{0, -8, 1}, {2, 0, 1}};
+    record_reach_options o{.maximum_radius = 1, .maximum_ratio = 8};
+    for (const double bend : {0.0, 1e-9}) {
+        e.curvature = {0, 0, bend};
+        const auto r = reach_of(e, o, 100.0, 0.0);
+        CHECK(r.own_radius == Approx(0.5));
+        CHECK(r.ratio == Approx(4));
+        CHECK(std::abs(r.axis.x) == Approx(1));
+    }
+    o.metric = error_metric::split_sphere;
+    CHECK(reach_of(e, o, 100.0, 0.0).own_radius == Approx(0.5));
+    std::swap(e.gradients.translation.x, e.gradients.translation.y);
+    CHECK(reach_of(e, o, 100.0, 0.0).own_radius == Approx(0.5));
 }
 
 TEST_CASE("reach_of: a huge footprint does not reach past the surroundings") {

@@ -44,10 +44,10 @@ using part_or_nothing = std::conditional_t<Kept, Part, left_out<Number>>;
 class compact_ellipse {
 public:
     compact_ellipse() = default;
-    /// `axis` is the shorter one, unit.
+    /// `axis` is the shorter one, unit. A ratio above `longest` counts as that.
     template <typename T>
     compact_ellipse(T ratio, const vec2<T>& axis) {
-        const T flatness = std::sqrt(std::max(T(0), 1 - 1 / (ratio * ratio)));
+        const T flatness = std::sqrt(std::max(T(0), 1 - 1 / square(std::min(ratio, T(longest)))));
         codes_ = {code(-axis.y * flatness), code(axis.x * flatness)};
     }
     template <typename T>
@@ -59,6 +59,7 @@ public:
         return {static_cast<T>(x) * T(step), static_cast<T>(y) * T(step)};
     }
     static constexpr float step = 0x1p-15f;
+    static constexpr float longest = 9.9f;  ///< rounded, never above the 10 that `longest_radius` knows
 
 private:
     template <typename T>

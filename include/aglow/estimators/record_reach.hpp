@@ -37,7 +37,8 @@ struct record_reach_options {
     /// The reach never exceeds so many harmonic mean distances: no derivative sees what lies behind the next corner.
     double geometric_limit{1};
 
-    /// How much longer than the other one axis of the ellipse may be; 1 makes circles.
+    /// How much longer than the other one axis of the ellipse may be; 1 makes circles, and more than 9.9 is no more
+    /// than that.
     double maximum_ratio{2};
 };
 
