@@ -373,6 +373,9 @@ TEST_CASE("is_usable: refuses whatever is not a number, and estimates from mostl
     e.axes.z = {0, 0, 0};
     CHECK_FALSE(is_usable(e, reach));
     e = good;
+    e.relative_noise = -0.5f;
+    CHECK_FALSE(is_usable(e, reach));
+    e = good;
     e.rejected = 201;
     CHECK_FALSE(is_usable(e, reach));
 }

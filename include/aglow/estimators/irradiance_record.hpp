@@ -256,7 +256,7 @@ template <Spectrum S, std::floating_point T>
     return known && lit && finite(e.position) && finite(e.axes.z) && length > T(0.99) && length < T(1.01) &&
            is_radiance(e.irradiance) && finite_band(t.x) && finite_band(t.y) && finite_band(r.x) && finite_band(r.y) &&
            is_finite(reach.radius) && reach.radius > 0 && is_finite(reach.ratio) && is_finite(e.relative_noise) &&
-           2 * e.rejected <= e.rays;
+           e.relative_noise >= 0 && 2 * e.rejected <= e.rays;
 }
 
 }  // namespace aglow
