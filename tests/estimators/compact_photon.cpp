@@ -192,3 +192,42 @@ TEST_CASE("compact_photon: gray power is kept to the bit, and an RGB map takes 8
     const double saved = double(full_map{all}.memory() - compact_map{all}.memory()) / double(all.size());
     CHECK(saved == Approx(8).epsilon(0.01));
 }
+
+TEST_CASE("compact_photon: what came from just above its surface still does when it is rounded") {
+    random_sampler<float> random{8};
+    const place_cells<float> cells{bounds<float>{{0, 0, 0}, {1, 1, 1}}};
+    for (int i = 0; i < 20000; ++i) {
+        const rgb n = uniform_sphere(random.next_2d());
+        const float up = 1e-3f * random.next_1d() + 1e-5f;
+        const float angle = 6.28f * random.next_1d();
+        const rgb wi = glm::normalize(frame<float>{n}.to_world({std::cos(angle), std::sin(angle), up}));
+        const auto full = landed({0.5f, 0.5f, 0.5f}, rgb{1}, wi, n);
+        const rgb facing = full.what.facing<float>();
+        if (!full.what.arrived_on(facing)) { continue; }
+        CHECK(compact_photon<rgb>{full, rgb{1}, cells, 1}.arrived_on(facing));
+    }
+}
+
+TEST_CASE("compact_photon: it faces what is within the cosine of its normal, blunt angles too") {
+    random_sampler<float> random{9};
+    const place_cells<float> cells{bounds<float>{{0, 0, 0}, {1, 1, 1}}};
+    for (int i = 0; i < 2000; ++i) {
+        const rgb n = uniform_sphere(random.next_2d());
+        const compact_photon<rgb> p{landed({0.5f, 0.5f, 0.5f}, rgb{1}, n, n), rgb{1}, cells, 1};
+        const rgb other = uniform_sphere(random.next_2d());
+        const float d = glm::dot(p.facing<float>(), other);
+        for (const float cosine : {-0.8f, -0.2f, 0.0f, 0.3f, 0.9f}) {
+            if (std::abs(d - cosine) > 1e-5f) { CHECK(p.faces(other, cosine) == (d > cosine)); }
+        }
+    }
+}
+
+TEST_CASE("compact_photon: piled up off the middle of their cell, photons still give all of their light there") {
+    const vec3<double> place{0.3, 1.0 / 3, 0};
+    const auto up = packed_direction<std::int16_t>{vec3<double>{0, 0, 1}};
+    std::vector<landed_photon<float, double>> all(20000, {place, {0.5f, up, up}});
+    all.push_back({{1, 1, 0}, {1, up, up}});
+    const photon_map<float, double, compact_photon<float>> map{all};
+    const auto e = map.irradiance(place, {0, 0, 1}, {.max_radius = 0.1, .kernel = kernel_shape::constant});
+    CHECK(static_cast<double>(e.value) * pi<double> * e.radius * e.radius == Approx(10000).epsilon(1e-5));
+}

@@ -99,3 +99,28 @@ TEST_CASE("edge_hessian: an edge at infinity and an edge without length add noth
     CHECK(edge_hessian<float>({a, a, 1, 0.5f}) == tangent_matrix<float>{});
     CHECK(edge_gradient<float>({a, a, 1, 0.5f}) == vec2<float>{});
 }
+
+TEST_CASE("edge_hessian: an edge is the sum of the parts that it is cut into, however long") {
+    random_sampler<double> random{4};
+    for (const double angle : {0.3, 1.0, 2.0, 2.9}) {
+        for (int i = 0; i < 50; ++i) {
+            const point3 a = glm::normalize(point3{random.next_1d() - 0.5, random.next_1d() - 0.5, 0.5});
+            const point3 side = glm::normalize(glm::cross(a, point3{0.3, random.next_1d() - 0.5, 0.4}));
+            const auto at = [&](double psi) { return a * std::cos(psi) + side * std::sin(psi); };
+            const double u0 = 0.2 + random.next_1d();
+            const double u1 = 0.2 + random.next_1d();
+            const double cut = angle * (0.2 + 0.6 * random.next_1d());
+            // The reciprocal distance along a straight edge.
+            const double u = (u0 * std::sin(angle - cut) + u1 * std::sin(cut)) / std::sin(angle);
+            const auto whole = edge_hessian<double>({a, at(angle), u0, u1});
+            const auto parts =
+                edge_hessian<double>({a, at(cut), u0, u}) + edge_hessian<double>({at(cut), at(angle), u, u1});
+            CAPTURE(angle, cut);
+            CHECK(size_of(whole + parts * -1.0) < 1e-7 * (size_of(whole) + size_of(parts)));
+            const auto slope = edge_gradient<double>({a, at(angle), u0, u1});
+            const auto slopes =
+                edge_gradient<double>({a, at(cut), u0, u}) + edge_gradient<double>({at(cut), at(angle), u, u1});
+            CHECK(glm::length(slope - slopes) < 1e-10 * (1 + glm::length(slope)));
+        }
+    }
+}

@@ -565,3 +565,83 @@ TEST_CASE("irradiance_cache: nearest finds a record where lookup finds none, on 
     CHECK(frozen.nearest({1.1f, 0, 0}, up).irradiance.x == 1);
     CHECK_FALSE(cache::frozen{}.nearest({0, 0, 0}, up));
 }
+
+TEST_CASE("irradiance_cache: no neighbour clamps a record below its own lower limit") {
+    for (const float footprint : {0.01f, 0.05f, 0.2f}) {
+        auto o = by_distance();
+        o.reach.minimum_footprints = 1.5;
+        cache c{10.f, o};
+        const auto wide = estimate_at({0, 0, 0}, up, {1, 1, 1}, 1);
+        const float lowest = c.reach(wide, footprint).lowest;
+        CHECK(lowest == Approx(1.5f * footprint));
+        c.insert(wide, footprint);
+        c.insert(estimate_at({0.001f, 0, 0}, up, {1, 1, 1}, 0.002f));
+        CHECK(c[0].radius() >= lowest);
+        CHECK(c[0].radius() < 1.06f * lowest);  // one of 256 lengths
+    }
+}
+
+TEMPLATE_TEST_CASE("irradiance_cache: a lookup's error is the rule's bend at its distance, and the record's noise", "",
+                   float, double) {
+    using T = TestType;
+    irradiance_cache_options o = by_distance(error_metric::hessian);
+    o.reach.accuracy = 0.08;
+    irradiance_cache<vec3<T>, T> c{T(1), o};
+    irradiance_estimate<vec3<T>, T> e;
+    e.axes = frame<T>{vec3<T>{0, 0, 1}};
+    e.irradiance = {1, 2, 1};
+    e.curvature = {T(0.5), 0, T(0.5)};
+    e.rays = 100;
+    for (const T noise : {T(0), T(0.1)}) {
+        e.relative_noise = noise;
+        e.position.x += 100;
+        REQUIRE(c.insert(e) == record_status::inserted);
+        for (const T d : {T(0), T(0.03), T(0.06)}) {
+            const auto a = c.lookup(e.position + vec3<T>{d, 0, 0}, vec3<T>{0, 0, 1});
+            REQUIRE(a);
+            // Half of the curvature times the distance squared.
+            CHECK(a.error == Approx(2 * (0.25 * d * d + noise)).epsilon(0.01).margin(1e-6));
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("irradiance_cache: where weights are below the least, nothing is covered", "", float, double) {
+    using T = TestType;
+    irradiance_cache_options o = by_distance();
+    o.lookup.minimum_weight = 0.3;
+    irradiance_cache<vec3<T>, T> c{T(10), o};
+    irradiance_estimate<vec3<T>, T> e;
+    e.axes = frame<T>{vec3<T>{0, 0, 1}};
+    e.irradiance = {1, 1, 1};
+    e.mean_inverse_distance = 1;
+    c.insert(e);
+    // One minus the distance.
+    CHECK(c.lookup({T(0.69), 0, 0}, {0, 0, 1}));
+    CHECK_FALSE(c.lookup({T(0.71), 0, 0}, {0, 0, 1}));
+    CHECK_FALSE(c.freeze().lookup({T(0.71), 0, 0}, {0, 0, 1}));
+}
+
+TEST_CASE("irradiance_cache: the nearest tells how wrong it may be, and what faces away never speaks") {
+    cache c{10.f, by_distance()};
+    c.insert(estimate_at({0, 0, 0}, up, {1, 2, 1}, 1));
+    const auto frozen = c.freeze();
+    CHECK(frozen.nearest({0.5f, 0, 0}, up).error == Approx(2 * 0.25f));
+    CHECK(frozen.nearest({5, 0, 0}, up).error == 2);
+    CHECK_FALSE(frozen.nearest({0.5f, 0, 0}, -up));
+}
+
+TEST_CASE("irradiance_cache: light from two sides is linear in direction no more, and the misfit says so") {
+    constexpr record_features features{.incident = true};
+    irradiance_cache<rgb, float, features> c{10.f, by_distance()};
+    auto e = estimate_at({0, 0, 0}, up, {1, 1, 1}, 1);
+    for (const float side : {0.3f, -0.3f}) {
+        e.incident = {side, 0, 0.6f};
+        c.insert(e);
+    }
+    const auto both = c.freeze().light({0, 0, 0}, up);
+    REQUIRE(both);
+    CHECK(std::abs(both.incident.x) < 1e-3f);
+    CHECK(both.incident.z == Approx(0.6).epsilon(1e-3));
+    // Each is off by 0.3, which sqrt(18) times makes the light wrong at the most.
+    CHECK(both.misfit == Approx(std::sqrt(18.0) * 0.3).epsilon(0.01));
+}

@@ -183,3 +183,26 @@ TEST_CASE("gradients: where samples were rejected the others stand in, as they d
     CHECK(share == Approx(18.0 / 15));
     CHECK(gradients(some, weights).rotation.x == Approx(gradients(all, weights).rotation.x * share));
 }
+
+TEST_CASE("gradient_weights: the weights are the integrals of their borders and strata, exactly") {
+    for (const hemisphere_shape& shape : {hemisphere_shape{2, 6}, hemisphere_shape{8, 25}, hemisphere_shape{37, 116}}) {
+        const gradient_weights<double> weights{shape};
+        double turning = 0;
+        double rotation = 0;
+        for (std::uint32_t j = 0; j < shape.rings; ++j) {
+            turning += weights.rings()[j].turning;
+            rotation += weights.rings()[j].rotation;
+            // The mean of tan over a stratum by the midpoint rule in sin²; towards the horizon it has a root's pole.
+            double mean = 0;
+            constexpr int steps = 20000;
+            for (int i = 0; i < steps; ++i) {
+                const double sine2 = (j + (i + 0.5) / steps) / shape.rings;
+                mean += std::sqrt(sine2 / (1 - sine2)) / steps;
+            }
+            CHECK(weights.rings()[j].rotation * shape.count() / pi<double> == Approx(mean).epsilon(0.01));
+        }
+        // From the zenith to the horizon: of cos / (r sin) cos sin, and of tan under the cosine.
+        CHECK(turning == Approx(1).epsilon(1e-12));
+        CHECK(rotation == Approx(square(pi<double>) / (2 * shape.sectors)).epsilon(1e-12));
+    }
+}

@@ -127,3 +127,31 @@ TEST_CASE("irradiance_points: scaling by a power of two changes no answer") {
         }
     }
 }
+
+TEST_CASE(
+    "irradiance_points: what all points are off by together is read with each, and broken caustics are left out") {
+    std::vector<irradiance_point<float, float>> points(3, {.position = {0, 0, 0}, .normal = up, .irradiance = 3});
+    points[1].position.x = 1;
+    points[2].position.x = 2;
+    points[1].caustic = std::numeric_limits<float>::quiet_NaN();
+    points[2].caustic = 2;
+    const irradiance_points<float, float> stored{points, in_sequence{}, {.common = 0.1, .bias = -0.02}};
+    CHECK(stored.size() == 2);
+    const auto found = stored.nearest({2, 0, 0}, up);
+    REQUIRE(found);
+    CHECK(found->value == 5);
+    CHECK(found->without_caustic == 3);
+    CHECK(found->common == Approx(0.5));
+    CHECK(found->bias == Approx(-0.1));
+}
+
+TEST_CASE("shared_error: of two, deviations add by squares and biases as they are; an estimate's error holds both") {
+    const shared_error sum = shared_error{.common = 0.3, .bias = 0.1} + shared_error{.common = 0.4, .bias = -0.3};
+    CHECK(sum.common == Approx(0.5));
+    CHECK(sum.bias == Approx(-0.2));
+    const auto e = sum.on(vec3<float>{1, 2, 0}, 1.5f);
+    CHECK(e.value == vec3<float>{1, 2, 0});
+    CHECK(e.common == Approx(1));
+    CHECK(e.bias == Approx(-0.4));
+    CHECK(e.error == Approx(2.5));  // 1.5 of its own, and two deviations of 1
+}
