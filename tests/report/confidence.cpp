@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <aglow/core/random.hpp>
@@ -40,6 +41,15 @@ TEST_CASE("quantile: linear between neighbours, the ends at 0 and 1, nothing of 
     CHECK(median(values) == 2.5);
     CHECK(quantile(values, 1.0 / 3) == Approx(2));
     CHECK(median({}) == 0);
+}
+
+TEST_CASE("quantile: among infinities it is finite or infinite, and never NaN") {
+    const double inf = std::numeric_limits<double>::infinity();
+    CHECK(median(std::vector<double>{0, 0, inf}) == 0);
+    CHECK(median(std::vector<double>{0, inf}) == inf);
+    CHECK(median(std::vector<double>{1, inf, inf, inf}) == inf);
+    CHECK(quantile(std::vector<double>{-1, 0, inf}, 0.5) == 0);
+    CHECK(quantile(std::vector<double>{inf, inf}, 0.95) == inf);
 }
 
 TEST_CASE("rising order: each place once, by value, equal ones as they came") {

@@ -44,6 +44,18 @@ TEST_CASE("image_error: a picture is not wrong against itself, black pixels incl
     CHECK(compare(seen({0, 0}), seen({0, 0})).mape == 0);
 }
 
+TEST_CASE("image_error: light where the whole reference is black is infinitely wrong, not right") {
+    const double inf = std::numeric_limits<double>::infinity();
+    const image_error e = compare(seen({0, 0, 0, 1}), seen({0, 0, 0, 0}));
+    CHECK(e.mape == inf);
+    CHECK(e.smape == 0.5);
+    CHECK(e.relative_q50 == 0);
+    CHECK(e.relative_max == inf);
+    const image_error all = compare(seen({1, 1}), seen({0, 0}));
+    CHECK(all.mape == inf);
+    CHECK(all.relative_q95 == inf);
+}
+
 TEST_CASE("image_error: broken pixels are counted and left out of everything") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
@@ -86,6 +98,40 @@ TEST_CASE("image_error: two halves take their own noise out of the squared error
     CHECK(std::abs(halves.mse - exact.mse) < 4 * 0.0102 / std::sqrt(n));
     CHECK(plain.mse > 50 * exact.mse);
     CHECK(halves.reference_relmse == Approx(0.005 * (exact.relmse / exact.mse)).epsilon(0.05));
+}
+
+TEST_CASE("image_error: two halves take their own noise out of relMSE, and their mean is the truth of all else") {
+    std::vector<double> image, truth, first, second;
+    random_sampler<double> random{10};
+    const int n = 40'000;
+    for (int i = 0; i < n; ++i) {
+        truth.push_back(0.5 + random.next_1d());
+        image.push_back(truth.back() + 0.01 * synthetic::normal(random));
+        first.push_back(truth.back() + 0.02 * synthetic::normal(random));
+        second.push_back(truth.back() + 0.02 * synthetic::normal(random));
+    }
+    const auto view = [&](const std::vector<double>& v) { return image_view<double>{v, v.size(), 1, 1}; };
+    const image_error exact = compare(view(image), view(truth));
+    const image_error halves = compare(view(image), view(first), view(second));
+    // A term's standard deviation is about 0.0005, over squares of 0.5 to 1.5.
+    CHECK(std::abs(halves.relmse - exact.relmse) < 4 * 0.0009 / std::sqrt(n));
+    const image_error one = compare(seen({3}), seen({1}), seen({3}));
+    CHECK(one.mape == Approx(1 / (2 + 0.02 * 2)));
+    CHECK(one.reference_mape == Approx(1 / (2 + 0.02 * 2)));
+    CHECK(one.energy_bias == 0.5);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const image_error broken = compare(seen({3, 2}), seen({1, 2}), seen({nan, 2}));
+    CHECK(broken.broken_reference == 1);
+    CHECK(broken.pixels == 1);
+    CHECK(broken.mape == 0);
+}
+
+TEST_CASE("image_error: just the asked share of the largest terms is trimmed") {
+    const std::vector<float> black(10, 0.0f);
+    const std::vector<float> image{1, 10, 2, 9, 3, 8, 4, 7, 5, 6};
+    // Squares over 1 as it is added to the reference: 1 + 4 + ... + 64.
+    CHECK(compare(seen(image), seen(black), {.epsilon = 1, .trimmed = 0.2}).relmse_trimmed == Approx(204.0 / 8));
+    CHECK(compare(seen(image), seen(black), {.epsilon = 1, .trimmed = 0}).relmse_trimmed == Approx(385.0 / 10));
 }
 
 TEST_CASE("image_error: relative measures do not change when the picture is scaled by a power of two") {

@@ -27,7 +27,7 @@ struct image_error_options {
 
 /// Measures over all pixels and channels; I is the picture, R the reference, δ = `dark` · mean R.
 struct image_error {
-    double mape{0};            ///< mean of |I−R| / (|R| + δ)
+    double mape{0};            ///< mean of |I−R| / (|R| + δ); infinite where all of R is black and I is not
     double smape{0};           ///< mean of |I−R| / ((|I|+|R|)/2 + δ)
     double relmse{0};          ///< mean of (I−R)² / (R² + ε)
     double relmse_trimmed{0};  ///< the same without the largest `trimmed` of the terms
@@ -73,7 +73,8 @@ public:
 
     [[nodiscard]] image_error result() {
         image_error e{};
-        e.mape = mean_of(relative_).mean();
+        const running_mean relative = mean_of(relative_);
+        e.mape = relative.rejected() > 0 ? std::numeric_limits<double>::infinity() : relative.mean();
         e.smape = smape_.mean();
         e.mse = mse_.mean();
         e.rmse = std::sqrt(std::max(0.0, e.mse));

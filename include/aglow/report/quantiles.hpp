@@ -34,7 +34,10 @@ namespace aglow {
     const double place = std::clamp(p, 0.0, 1.0) * static_cast<double>(rising.size() - 1);
     const auto below = static_cast<std::size_t>(place);
     const std::size_t above = std::min(below + 1, rising.size() - 1);
-    return std::lerp(rising[below], rising[above], place - static_cast<double>(below));
+    const double share = place - static_cast<double>(below);
+    // Between infinities there is nothing to go by: inf - inf.
+    if (!(share > 0 && rising[below] < rising[above])) { return rising[below]; }
+    return std::lerp(rising[below], rising[above], share);
 }
 
 /// The p-quantile of `values`; 0 of nothing. O(n log n).
