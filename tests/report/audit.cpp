@@ -103,6 +103,26 @@ TEST_CASE("audit: a right picture is certified") {
     CHECK(count(50, f, f.probe(), {.target = 0.02, .bias_target = 0.005}, audit_status::certified) == 50);
 }
 
+TEST_CASE("audit: a black picture of a black scene is certified, its energy too, and of a lit one it is not") {
+    const std::vector<float> values(64 * 64, 0.0f);
+    const audited_picture<float> black{.image = {values, 64, 64}};
+    const auto unlit = [](std::size_t, std::uint64_t) { return 0.0; };
+    const audit_result right = audit(black, unlit, {.bias_target = 0.01});
+    CHECK(right.status == audit_status::certified);
+    CHECK(right.energy_bias.low == 0);
+    CHECK(right.energy_bias.high == 0);
+    CHECK(error_bars(black, right)[0] == 0);
+    // Every other pixel is lit, by samples that differ a lot.
+    const auto lit = [](std::size_t pixel, std::uint64_t seed) {
+        return pixel % 2 == 0 && unit_interval<double>(mix(seed, 5)) < 0.2 ? 5.0 : 0.0;
+    };
+    const audit_result wrong = audit(black, lit, {.bias_target = 0.01});
+    CHECK(wrong.status == audit_status::not_certified);
+    CHECK(wrong.mean_error == Approx(0.5).margin(0.1));
+    CHECK(wrong.energy_bias.estimate == -1);
+    CHECK(wrong.samples < 100'000'000);
+}
+
 TEST_CASE("audit: a picture 5 % too bright is never certified for 4 %, and found out for 3.5 %") {
     const field f{damage::too_bright};
     CHECK(count(50, f, f.probe(), {.target = 0.04}, audit_status::certified) == 0);

@@ -37,7 +37,10 @@ namespace detail {
 /// point too seldom. `unmet` is added on either side.
 [[nodiscard]] inline interval energy_bias(std::span<const double> gaps, double mean, double confidence, double unmet) {
     const interval gap = cautious_interval(gaps, 1 - 0.8 * (1 - confidence));
-    const auto relative = [&](double d) { return d < mean ? d / (mean - d) : std::numeric_limits<double>::infinity(); };
+    const auto relative = [&](double d) {
+        if (d == 0) { return 0.0; }  // a black picture of a black scene among them
+        return d < mean ? d / (mean - d) : std::numeric_limits<double>::infinity();
+    };
     return {relative(gap.estimate), relative(gap.low - unmet), relative(gap.high + unmet)};
 }
 

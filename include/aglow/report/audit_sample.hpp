@@ -157,6 +157,7 @@ public:
         double singles = 0;
         double halves = 0;
         for (const probe_record& r : records_) {
+            if (!(of_.scale(r) > 0)) { continue; }  // black, in a black picture
             const double scale = 1 / of_.scale(r);
             singles += scale * mean_over_choices<2>([&](unsigned pair) {
                            const unsigned one = pair & (~pair + 1);
@@ -242,7 +243,7 @@ private:
             for (const std::size_t i : members) {
                 const probe_record& r = *all[i];
                 const double gap = std::abs(picture_.image.gray(r.pixel) - of_.gray(r, chosen));
-                scores.push_back(gap / usable_guess(picture_, r.pixel, of_.floor));
+                scores.push_back(gap > 0 ? gap / usable_guess(picture_, r.pixel, of_.floor) : 0);
             }
             return conformal_quantile(scores, confidence).value_or(std::numeric_limits<double>::infinity());
         };

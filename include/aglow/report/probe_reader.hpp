@@ -79,7 +79,10 @@ struct probe_reader {
     /// Relative standard deviation of one batch, averaged over channels.
     [[nodiscard]] double spread(const probe_record& r) const {
         double sum = 0;
-        for (std::size_t c = 0; c < r.channels; ++c) { sum += std::sqrt(r.batch_variance(c)) / below(r, c); }
+        for (std::size_t c = 0; c < r.channels; ++c) {
+            const double deviation = std::sqrt(r.batch_variance(c));
+            sum += deviation > 0 ? deviation / below(r, c) : 0;
+        }
         return sum / static_cast<double>(r.channels);
     }
 
