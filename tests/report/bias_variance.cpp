@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <aglow/report/bias_variance.hpp>
@@ -43,4 +44,21 @@ TEST_CASE("bias_variance: one picture says nothing, and sizes must agree") {
     all.add(seen(values));
     CHECK_THROWS_AS(all.parts(seen(values), seen(values)), std::invalid_argument);
     CHECK_THROWS_AS(all.add(image_view<double>{std::span{values}.first(5), 5, 1, 1}), std::invalid_argument);
+}
+
+TEST_CASE("bias_variance: a value that was broken in one picture or half is left out, and the rest is as it was") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> first(count, 1.0), second(count, 1.0);
+    first[1] = nan;
+    second[2] = nan;
+    bias_variance all;
+    for (std::uint64_t s = 0; s < 4; ++s) {
+        std::vector<double> picture(count, s % 2 == 0 ? 1.0 : 3.0);
+        if (s == 2) { picture[0] = nan; }
+        all.add(seen(picture));
+    }
+    const error_parts parts = all.parts(seen(first), seen(second));
+    // Each value is 1 or 3 in turn: variance 4 / 3, and a mean of 2 that is 1 off.
+    CHECK(parts.variance == Approx(4.0 / 3 / 1.01).epsilon(1e-12));
+    CHECK(parts.bias2 == Approx((1 - 1.0 / 3) / 1.01).epsilon(1e-12));
 }

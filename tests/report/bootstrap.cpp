@@ -45,3 +45,18 @@ TEST_CASE("bootstrap: the same seed gives the same bits, another seed another in
           bootstrap_ratio(values, values, plain_mean, {.seed = 2}).high);
     CHECK_THROWS_AS(bootstrap(0, mean), std::invalid_argument);
 }
+
+TEST_CASE("bootstrap: the interval of a ratio of means is that of their relative errors, for many normal runs") {
+    std::vector<double> above, below;
+    random_sampler<double> random{2};
+    for (int i = 0; i < 400; ++i) {
+        above.push_back(10 + synthetic::normal(random));
+        below.push_back(5 + synthetic::normal(random));
+    }
+    const interval ratio = bootstrap_ratio(above, below, plain_mean, {.resamples = 4000});
+    const double relative = std::sqrt(square(0.1) + square(0.2)) / std::sqrt(400.0);
+    const double half = 1.96 * relative * ratio.estimate;
+    CHECK(ratio.estimate == Approx(plain_mean(above) / plain_mean(below)));
+    CHECK(ratio.low == Approx(ratio.estimate - half).margin(0.12 * half));
+    CHECK(ratio.high == Approx(ratio.estimate + half).margin(0.12 * half));
+}

@@ -107,3 +107,25 @@ TEST_CASE("decay: one measurement follows the law of independent samples, two th
     CHECK(fit_decay(two).work_to(0.1) == Approx(256));
     CHECK(fit_decay({}).amplitude == 0);
 }
+
+TEST_CASE("decay: of noisy series, the least floor is no higher than the true one, and one that is none is not told") {
+    int above = 0;
+    int invented = 0;
+    const auto series = [](double floor, std::uint64_t r) {
+        std::vector<measured_error> points;
+        for (double w = 1; w < 300; w *= 2) {
+            const double e = floor + 0.4 * std::pow(w, -0.5);
+            points.push_back({w, e * (1 + 0.05 * synthetic::normal_of(mix(r, points.size() + 7))), 0.05 * e});
+        }
+        return points;
+    };
+    for (std::uint64_t r = 0; r < 300; ++r) {
+        above += fit_decay(series(0.08, r)).floor_low > 0.08 ? 1 : 0;
+        const decay_fit none = fit_decay(series(0, r));
+        CHECK(none.floor >= 0);
+        invented += none.floor > 0 ? 1 : 0;
+    }
+    // Three and a half standard deviations, and two.
+    CHECK(above <= 1);
+    CHECK(invented <= 30);
+}
