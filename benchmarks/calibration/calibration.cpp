@@ -176,9 +176,11 @@ void print_trials(const known_scene& scene, const char* method, const stop_tally
     const auto at = [](const std::vector<double>& v, double q) { return v.empty() ? 0.0 : aglow::quantile(v, q); };
     std::printf(
         "until %-16s %-17s certified %3zu (%zu falsely), out of reach %zu, out of work %zu of %zu; work over the "
-        "oracle's: median %.2f, 90 %% %.2f; the picture's alone: %.2f, %.2f\n",
+        "oracle's: median %.2f, 90 %% %.2f; the picture's alone: %.2f, %.2f; a probe's sample costs %.2f of the "
+        "picture's\n",
         scene.name().c_str(), method, t.reached, t.falsely, t.unreachable, t.out_of_work, t.trials, at(t.work, 0.5),
-        at(t.work, 0.9), at(t.picture_work, 0.5), at(t.picture_work, 0.9));
+        at(t.work, 0.9), at(t.picture_work, 0.5), at(t.picture_work, 0.9),
+        t.price.each * aglow::square(static_cast<double>(scene.how().width)));
     std::fflush(stdout);
 }
 
@@ -197,12 +199,12 @@ void help(const effort& e) {
     std::printf(
         "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--pool=N] [--certificates=N] [--method=N]\n"
         "       [--target=X] [--noise=X] [--class-probes=N] [--budget=N] [--bounded] [--width=N]\n"
-        "       [--no-coverage] [--no-controls] [--no-trials]\n"
+        "       [--probes=guided|path] [--no-coverage] [--no-controls] [--no-trials]\n"
         "Percentages of %zu certificates at nominal 95 %%: error bars by kind of pixel; statements on the energy, the\n"
         "mean relative error and its 95 %% quantile, and how far above the truth they are; false certificates, at a\n"
         "target just below the true error where none is told. Then pictures that are wrong on purpose, and pictures\n"
         "rendered until they are certified, beside an oracle that knows their error, with probes weighed against\n"
-        "pictures of --width.\n",
+        "pictures of --width. Probes are the renderer's, guided where light comes over mirrors, or all plain paths.\n",
         e.certificates);
 }
 
@@ -230,6 +232,8 @@ bool take(const std::string& argument, job& what) {
         what.controls = false;
     } else if (argument == "--no-trials") {
         what.trials = false;
+    } else if (argument == "--probes=guided" || argument == "--probes=path") {
+        e.probes = argument == "--probes=path" ? host::probe_kind::path : host::probe_kind::guided;
     } else if (argument == "--bounded") {
         e.bounded = true;
     } else if (take(argument, "--method", what.first)) {

@@ -12,20 +12,22 @@
 #include <aglow/algorithms/cache_integrators.hpp>
 #include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/film.hpp>
-#include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/progressive.hpp>
+#include <aglow/algorithms/trace_photons.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/report/audit.hpp>
 
 #include "common/audited_film.hpp"
-#include "common/light_set.hpp"
+#include "common/counted_scene.hpp"
+#include "common/probe_paths.hpp"
 #include "common/scene.hpp"
 #include "common/scenes/registry.hpp"
 
 namespace calibration {
 
 using rgb = glm::vec3;
+using world_type = host::counted_scene<host::scene<float>>;
 
 /// How much work goes into a calibration.
 struct effort {
@@ -38,6 +40,7 @@ struct effort {
     bool bounded{false};     ///< whether audits are told how large a sample can be
     std::size_t width{512};  ///< and height of the pictures whose work that of probes is compared with
     std::size_t budget{0};   ///< samples of an audit; 0: an eighth of the pool for each of its probes
+    host::probe_kind probes{host::probe_kind::guided};  ///< as the renderer's, or by plain paths
 };
 
 /// A scene, and a pool of unbiased samples of every pixel. What is true here is the mean of the pool and looks are
@@ -51,7 +54,11 @@ public:
     }
 
     known_scene(const host::scene_description<float>& description, const effort& e)
-        : name_{description.name}, effort_{e}, scene_{description}, tracer_{scene_, scene_.lights()} {
+        : name_{description.name},
+          effort_{e},
+          scene_{description},
+          paths_{scene_, scene_.lights(), 0, aglow::own_threads{}, e.probes},
+          tracer_{paths_.tracer()} {
         effort_.pool = std::bit_floor(std::max(e.pool, 256u));
         fill_pool();
         find_features();
@@ -62,11 +69,20 @@ public:
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const effort& how() const { return effort_; }
-    [[nodiscard]] const host::scene<float>& scene() const { return scene_; }
+    [[nodiscard]] const world_type& scene() const { return scene_; }
     [[nodiscard]] const std::vector<float>& truth() const { return truth_; }
     [[nodiscard]] const std::vector<char>& feature() const { return feature_; }
     /// Pixels that owe a tenth of their light or more to caustics.
     [[nodiscard]] const std::vector<char>& caustic() const { return caustic_; }
+
+    /// Rays that a probe's sample costs.
+    [[nodiscard]] double probe_cost() const { return rays_a_sample(tracer_) + paths_.guiding_cost(); }
+    /// Rays that were spent before the first of them.
+    [[nodiscard]] double guide_cost() const { return paths_.guide_cost(); }
+    template <typename Integrator>
+    [[nodiscard]] double rays_a_sample(const Integrator& integrator) const {
+        return host::rays_a_sample(eye(), integrator, effort_.pixels, effort_.pixels, 5);
+    }
 
     /// What no sample of a path exceeds but for a share that falls exponentially: the brightest lamp at each surface
     /// before roulette begins, and once more for what is left then.
@@ -189,8 +205,9 @@ private:
 
     std::string name_;
     effort effort_;
-    host::scene<float> scene_;
-    aglow::path_tracer<host::scene<float>, host::light_set<float>> tracer_;
+    world_type scene_;
+    host::probe_paths<world_type> paths_;
+    decltype(paths_.tracer()) tracer_;
     std::vector<float> truth_;
     std::vector<std::vector<rgb>> pool_;  // [level][pixel][set], sets twice as large with each level
     std::vector<char> feature_;
@@ -292,7 +309,7 @@ enum class mistake { none, wide_radius, no_depth, lamp_missing, coarse_cache };
 
 /// Calls `use` with the integrator number `method`, all but the progressive one, of `world` with its maps.
 template <typename Use>
-void with_integrator(const known_scene& scene, const host::scene<float>& world, std::size_t method, std::uint64_t seed,
+void with_integrator(const known_scene& scene, const world_type& world, std::size_t method, std::uint64_t seed,
                      mistake wrong, const Use& use) {
     const std::size_t n = scene.how().pixels;
     const auto& lights = world.lights();
@@ -320,15 +337,17 @@ void with_integrator(const known_scene& scene, const host::scene<float>& world, 
 }
 
 inline constexpr std::size_t progressive = 4;
+inline constexpr aglow::progressive_options passes_of{.caustic = 10'000, .indirect = 20'000};
 
 /// Calls `use` with a callable that exposes a film with so many more samples, or passes of the progressive method.
 template <typename Use>
-void with_method(const known_scene& scene, const host::scene<float>& world, std::size_t method, std::uint64_t seed,
+void with_method(const known_scene& scene, const world_type& world, std::size_t method, std::uint64_t seed,
                  mistake wrong, const Use& use) {
     const aglow::own_threads run{};
     if (method == progressive) {
-        aglow::progressive_photon_mapping passes{
-            world, world.lights(), {.caustic = 10'000, .indirect = 20'000, .seed = seed}};
+        aglow::progressive_options options = passes_of;
+        options.seed = seed;
+        aglow::progressive_photon_mapping passes{world, world.lights(), options};
         return use([&](aglow::film<rgb>& film, std::uint32_t more) {
             for (std::uint32_t i = 0; i < more; ++i) { passes.pass(film, scene.eye(), run); }
         });
@@ -341,8 +360,8 @@ void with_method(const known_scene& scene, const host::scene<float>& world, std:
 }
 
 /// The picture of `scene` by method number `method`, seen in `world`.
-[[nodiscard]] inline judged_picture render(const known_scene& scene, const host::scene<float>& world,
-                                           std::size_t method, std::uint64_t seed, mistake wrong = mistake::none) {
+[[nodiscard]] inline judged_picture render(const known_scene& scene, const world_type& world, std::size_t method,
+                                           std::uint64_t seed, mistake wrong = mistake::none) {
     aglow::film<rgb> film{scene.how().pixels, scene.how().pixels};
     with_method(scene, world, method, seed, wrong,
                 [&](const auto& expose) { expose(film, method == progressive ? 32 : 16); });
@@ -353,6 +372,38 @@ void with_method(const known_scene& scene, const host::scene<float>& world, std:
 [[nodiscard]] inline judged_picture render(const known_scene& scene, std::size_t method, std::uint64_t seed,
                                            mistake wrong = mistake::none) {
     return render(scene, scene.scene(), method, seed, wrong);
+}
+
+/// Rays of one pixel in a pass of the progressive method: its own share of the photons', and those of its sample.
+[[nodiscard]] inline double pass_cost(const known_scene& scene) {
+    const auto& world = scene.scene();
+    const auto rays = [] { return host::ray_count::all_nearest() + host::ray_count::all_shadow(); };
+    const aglow::photon_options wanted{.caustic = passes_of.caustic, .indirect = passes_of.indirect, .seed = 11};
+    const auto maps = aglow::trace_photons(world, world.lights(), wanted, aglow::own_threads{});
+    aglow::photon_options next = wanted;
+    next.paths = {.caustic = maps.caustic.paths, .indirect = maps.indirect.paths};
+    next.pass = 1;
+    const std::uint64_t before = rays();
+    (void)aglow::trace_photons(world, world.lights(), next, aglow::own_threads{});
+    const double photons = static_cast<double>(rays() - before) / aglow::square(static_cast<double>(scene.how().width));
+    const host::sample_lookups lookups{.maps = maps.caustic.size() > 0 ? 2u : 1u};
+    return photons + lookups.cost() +
+           scene.rays_a_sample(
+               aglow::layered_integrator{world, world.lights(), aglow::direct_layer{world, world.lights()}});
+}
+
+/// Rays that a sample of a pixel costs by method number `method`, lookups weighed as the renderer weighs them.
+[[nodiscard]] inline double picture_cost(const known_scene& scene, std::size_t method) {
+    if (method == progressive) { return pass_cost(scene); }
+    double cost = 0;
+    with_integrator(scene, scene.scene(), method, 11, mistake::none, [&](const auto& integrator) {
+        host::sample_lookups lookups;
+        if constexpr (requires { integrator.cache(); }) { lookups.caches = 1; }
+        if constexpr (requires { integrator.maps(); }) { lookups.maps = integrator.maps().caustic.size() > 0 ? 1 : 0; }
+        if (method == 0) { ++lookups.maps; }
+        cost = scene.rays_a_sample(integrator) + lookups.cost();
+    });
+    return cost;
 }
 
 }  // namespace calibration

@@ -59,8 +59,21 @@ private:
     std::vector<judged_picture> pictures_{};
 };
 
+/// What probes cost, in samples of every pixel of a picture of the width that the effort names: that is larger than the
+/// small ones that are judged here.
+struct probe_price {
+    double each{0};   ///< of a sample
+    double guide{0};  ///< before the first
+};
+
+[[nodiscard]] inline probe_price price_of(const known_scene& scene, std::size_t method) {
+    const double all = picture_cost(scene, method) * aglow::square(static_cast<double>(scene.how().width));
+    return {scene.probe_cost() / all, scene.guide_cost() / all};
+}
+
 /// What became of the trials of one method.
 struct stop_tally {
+    probe_price price{};
     std::size_t trials{0};
     std::size_t reached{0};
     std::size_t unreachable{0};
@@ -73,15 +86,13 @@ struct stop_tally {
 /// One trial: the target is the error of the picture when the oracle's work is done, and the rule may do 8 times that.
 inline void try_to_stop(const known_scene& scene, const growing_picture& growing, double target, std::uint64_t seed,
                         stop_tally& into) {
-    // A path takes about twice as long as a sample of a picture; these are small ones of what would be larger.
-    const double probe_work = 2 / aglow::square(static_cast<double>(scene.how().width));
     const double oracle = growing.work(growing.within(target));
     std::size_t now = 0;
     const auto advance = [&](double work) {
         now = growing.at(work);
         return growing.picture(now);
     };
-    aglow::render_until_options options{.first_work = 1, .most_work = 8 * oracle, .probe_work = probe_work};
+    aglow::render_until_options options{.first_work = 1, .most_work = 8 * oracle, .probe_work = into.price.each};
     options.audit = {.target = target, .seed = seed};
     const auto end = aglow::render_until(advance, scene.probe(), options, aglow::own_threads{});
     ++into.trials;
@@ -90,14 +101,14 @@ inline void try_to_stop(const known_scene& scene, const growing_picture& growing
     if (end.status != aglow::until_status::reached) { return; }
     ++into.reached;
     into.falsely += growing.error(now) > target ? 1 : 0;
-    const double probes = probe_work * static_cast<double>(end.probe_samples);
+    const double probes = into.price.guide + into.price.each * static_cast<double>(end.probe_samples);
     into.work.push_back((growing.work(now) + probes) / oracle);
     into.picture_work.push_back(growing.work(now) / oracle);
 }
 
 /// Targets where an oracle needs 4 to 32 samples a pixel, spread evenly, on four pictures of `method`.
 [[nodiscard]] inline stop_tally stop_trials(const known_scene& scene, std::size_t method) {
-    stop_tally result;
+    stop_tally result{.price = price_of(scene, method)};
     constexpr std::size_t pictures = 4;
     for (std::size_t p = 0; p < pictures; ++p) {
         const growing_picture growing{scene, method, 11 + p, 256};

@@ -13,19 +13,16 @@
 
 #include <aglow/algorithms/caustic_light.hpp>
 #include <aglow/algorithms/film.hpp>
-#include <aglow/algorithms/path_guide.hpp>
-#include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/core/parallel.hpp>
-#include <aglow/core/random.hpp>
 #include <aglow/report/render_until.hpp>
 #include <aglow/report/statement.hpp>
 
 #include "common/audited_film.hpp"
 #include "common/camera.hpp"
-#include "common/counted_scene.hpp"
 #include "common/developed.hpp"
 #include "common/light_set.hpp"
+#include "common/probe_paths.hpp"
 #include "render/options.hpp"
 #include "render/phases.hpp"
 #include "render/report.hpp"
@@ -45,10 +42,10 @@ public:
         : scene_{scene}, lights_{lights}, view_{view}, options_{options}, run_{run} {}
 
     /// A film with samples until an audit certifies the error that was asked for, or it is clear that none will; what
-    /// came of it is told to `result`. `lookups` is what those of a sample cost, in rays.
+    /// came of it is told to `result`. `lookups` are those of a sample.
     template <typename Integrator>
-    [[nodiscard]] aglow::film<S> until(const Integrator& integrator, double lookups, const time_budget& budget,
-                                       render_result& result) {
+    [[nodiscard]] aglow::film<S> until(const Integrator& integrator, const sample_lookups& lookups,
+                                       const time_budget& budget, render_result& result) {
         const double begun = budget.spent();
         aglow::film<S> film{options_.width, options_.height};
         std::optional<audited_film> numbers;
@@ -99,20 +96,16 @@ private:
         return [this](const vec2<T>& film) { return view_.through(film, options_.width, options_.height); };
     }
 
-    /// What looks at pixels again: path tracing, guided where there may be mirrors.
-    [[nodiscard]] auto judge() {
-        if constexpr (aglow::any(aglow::static_lobes<World>, aglow::lobe_set::specular)) {
-            if (!guide_) { guide_.emplace(scene_, lights_, aglow::path_guide_options{.seed = options_.seed}, run_); }
-            return aglow::guided_path_tracer<World, light_set<T>>{scene_, lights_, *guide_};
-        } else {
-            return aglow::path_tracer<World, light_set<T>>{scene_, lights_};
-        }
+    /// What looks at pixels again, made when it is first asked for.
+    [[nodiscard]] const probe_paths<World>& judge() {
+        if (!judge_) { judge_.emplace(scene_, lights_, options_.seed, run_); }
+        return *judge_;
     }
 
     template <typename Use>
     auto with_probe(const Use& use) {
         const auto through = eye();
-        const auto tracer = judge();
+        const auto tracer = judge().tracer();
         return use(aglow::pixel_probe{through, tracer, options_.width});
     }
 
@@ -125,26 +118,12 @@ private:
 
     /// What a sample of a probe costs, in samples of every pixel by `integrator`.
     template <typename Integrator>
-    [[nodiscard]] double probe_work(const Integrator& integrator, double lookups) {
-        const auto tracer = judge();
-        // Where paths are guided, that costs about as much as three rays.
-        const double guided = guide_ && !guide_->empty() ? 3 : 0;
-        return (rays_a_sample(tracer) + guided) / (rays_a_sample(integrator) + lookups) /
+    [[nodiscard]] double probe_work(const Integrator& integrator, const sample_lookups& lookups) {
+        const auto rays = [&](const auto& of) {
+            return rays_a_sample(eye(), of, options_.width, options_.height, options_.seed);
+        };
+        return (rays(judge().tracer()) + judge().guiding_cost()) / (rays(integrator) + lookups.cost()) /
                static_cast<double>(options_.width * options_.height);
-    }
-
-    /// Rays of a sample, by a few; what a clock tells would not be the same again.
-    template <typename Integrator>
-    [[nodiscard]] double rays_a_sample(const Integrator& integrator) const {
-        constexpr std::size_t pixels = 1024;
-        const auto through = eye();
-        const aglow::pixel_probe look{through, integrator, options_.width};
-        const auto rays = [] { return ray_count::here().nearest + ray_count::here().shadow; };
-        const std::uint64_t before = rays();
-        for (std::size_t i = 0; i < pixels; ++i) {
-            (void)look(aglow::mix(options_.seed, i) % (options_.width * options_.height), options_.seed, 1);
-        }
-        return static_cast<double>(rays() - before) / pixels;
     }
 
     static void tell(const aglow::until_result& reached, render_result& result) {
@@ -172,7 +151,7 @@ private:
     camera<T> view_;
     const render_options& options_;
     const aglow::own_threads& run_;
-    std::optional<aglow::path_guide<T>> guide_{};
+    std::optional<probe_paths<World>> judge_{};
 };
 
 }  // namespace host

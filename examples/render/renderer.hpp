@@ -20,6 +20,7 @@
 #include "common/developed.hpp"
 #include "common/drawing.hpp"
 #include "common/light_set.hpp"
+#include "common/probe_paths.hpp"
 #include "common/progress.hpp"
 #include "render/certifier.hpp"
 #include "render/options.hpp"
@@ -212,17 +213,17 @@ private:
 
     /// Adds samples until an audit certifies the error that was asked for, or it is clear that none will.
     template <typename Integrator>
-    picture until(const Integrator& integrator, double lookups) {
+    picture until(const Integrator& integrator, const sample_lookups& lookups) {
         const aglow::film<S> film = certifier_.until(integrator, lookups, budget_, result_);
         taken_ = film.samples();
         if (options_.error) { certifier_.audit(film, budget_, result_); }
         return taken_from(film, true);
     }
 
-    /// What the lookups of a sample cost, in rays: about one in a cache, eight in a map of photons.
-    [[nodiscard]] double lookups_a_sample(const maps_type* maps, const cache_type* cache) const {
+    [[nodiscard]] sample_lookups lookups_a_sample(const maps_type* maps, const cache_type* cache) const {
         const bool caustics = maps && maps->caustic.size() > 0;
-        return (cache ? 1 : 0) + (caustics ? 8 : 0) + (options_.how == method::photon_map ? 8 : 0);
+        return {.caches = cache ? 1u : 0u,
+                .maps = (caustics ? 1u : 0u) + (options_.how == method::photon_map ? 1u : 0u)};
     }
 
     /// Layers are given as many samples as the picture got, whatever it was limited by.
