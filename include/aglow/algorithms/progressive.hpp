@@ -14,13 +14,14 @@
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
+#include <aglow/core/log_gamma.hpp>
 
 namespace aglow {
 
 /// Squared radius of pass `i` (from 1) over that of the first, for shrinking by `alpha` in (0, 1): the closed form of
 /// r²(i+1) / r²(i) = (i + alpha) / (i + 1) (Knaus & Zwicker 2011, (20)), which no product of passes can wear down.
 [[nodiscard]] inline double radius2_share(double i, double alpha) {
-    return std::exp(std::lgamma(i + alpha) - std::lgamma(1 + alpha) - std::lgamma(i + 1));
+    return std::exp(log_gamma(i + alpha) - log_gamma(1 + alpha) - log_gamma(i + 1));
 }
 
 /// How passes are made.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include <aglow/core/log_gamma.hpp>
 #include <aglow/core/numbers.hpp>
 
 namespace aglow {
@@ -49,15 +50,6 @@ template <typename F>
     return f;
 }
 
-/// log Γ(x) for x > 0, without the global that `std::lgamma` writes (Stirling's series after a shift past 16).
-[[nodiscard]] inline double log_gamma(double x) {
-    double shift = 0;
-    for (; x < 16; x += 1) { shift += std::log(x); }
-    const double y = 1 / (x * x);
-    const double series = (1.0 / 12 - y * (1.0 / 360 - y * (1.0 / 1260 - y * (1.0 / 1680 - y / 1188)))) / x;
-    return (x - 0.5) * std::log(x) - x + 0.5 * std::log(2 * pi<double>) + series - shift;
-}
-
 }  // namespace detail
 
 /// z with `normal_cdf(z)` = p; -inf and +inf at 0 and 1.
@@ -72,7 +64,7 @@ template <typename F>
     if (x <= 0) { return 0; }
     if (x >= 1) { return 1; }
     if (x > (a + 1) / (a + b + 2)) { return 1 - beta_cdf(1 - x, b, a); }
-    const double scale = detail::log_gamma(a + b) - detail::log_gamma(a) - detail::log_gamma(b);
+    const double scale = log_gamma(a + b) - log_gamma(a) - log_gamma(b);
     return std::exp(scale + a * std::log(x) + b * std::log1p(-x)) / a * detail::beta_fraction(x, a, b);
 }
 
