@@ -198,6 +198,13 @@ TEST_CASE("film: what all samples have in common does not average out of the mea
         CHECK(picture.error(3, 2) == (fresh ? 0.25f : 0.5f));
     }
     CHECK(film<S>{2, 2}.error_of_mean().within() == 0);
+    // Not every exposure was fresh: what the others have in common no spread tells.
+    for (const bool first : {false, true}) {
+        film<S> mixed{8, 4};
+        mixed.expose(flat_eye, even, {.samples = 2, .fresh = first});
+        mixed.expose(flat_eye, even, {.samples = 2, .fresh = !first});
+        CHECK(mixed.error(3, 2) == 0.5f);
+    }
 }
 
 TEST_CASE("film: the noise of samples is in the error of the mean, as far as it strays") {

@@ -88,6 +88,23 @@ TEST_CASE("pixel_probe: faults are noted where the integrator's options say so, 
     CHECK(blames_the_host(audit(seen(values), aglow::pixel_probe{eye, guided, side}, loose)));
 }
 
+TEST_CASE("host_faults: each kind is counted with what it carried, of one fault no more than 65536 samples") {
+    using aglow::host_fault;
+    aglow::host_faults faults;
+    CHECK(statement(faults).empty());
+    faults.note(host_fault::normal, 0.25);
+    faults.note(host_fault::normal, 0.5);
+    faults.note(host_fault::weight, 1e30);
+    faults.note(host_fault::weight, -3);
+    CHECK(faults.count(host_fault::normal) == 2);
+    CHECK(faults.lost(host_fault::normal) == 0.75);
+    CHECK(faults.lost(host_fault::weight) == 65536);
+    CHECK(faults.lost(host_fault::place) == 0);
+    CHECK(faults.count() == 4);
+    CHECK(faults.lost() == 65536.75);
+    CHECK(statement(faults).find("2 normals that are not unit, 0.75") == 0);
+}
+
 TEST_CASE("pixel_probe: the same light is lost for any number of threads") {
     const flawed_scene scene{room.scene, flaw::nan_weight};
     const aglow::path_tracer tracer{scene, room.light};

@@ -417,6 +417,7 @@ TEST_CASE("statement: says the status, the bound, why, and what was not seen") {
     CHECK(text.find("not certified: mean relative error within 2 %") == 0);
     CHECK(text.find("because the mean relative error is above the target") != std::string::npos);
     CHECK(text.find("with 95 % confidence, the energy is off by 4.") != std::string::npos);
+    CHECK(text.find("with 95 % confidence, 95 % of the pixels are off by at most ") != std::string::npos);
     CHECK(text.find("caustics of the point light, 3 % of the light") != std::string::npos);
     CHECK(percent(0.0412849) == "4.13 %");
     CHECK(percent(std::numeric_limits<double>::infinity()) == "unknown");
