@@ -62,6 +62,11 @@ struct told_lamp {
     }
 };
 
+/// A bulb whose host tells the density of every light.
+struct told_bulb : bulb<glm::vec3, float> {
+    [[nodiscard]] float pdf(const glm::vec3&, const glm::vec3&, const toy_hit<glm::vec3, float>&) const { return 0; }
+};
+
 const vec3<double> up{0, 0, 1};
 
 /// Radiance that a white matte floor at `point` sends straight up.
@@ -87,6 +92,13 @@ TEST_CASE("direct_light: a bulb lights a floor by I cos / d2, exactly, and nothi
     }
     const bulb<glm::vec3, float> grazing{.position = {1, 0, 1e-7f}, .intensity = {1, 2, 4}};
     CHECK(reflected({}, grazing, {0, 0, 0}).x == Approx(1e-7f / pi<float>).epsilon(1e-5));
+}
+
+TEST_CASE("direct_light: a bulb among lights that scattered rays can meet is theirs to share in nothing") {
+    const bulb<glm::vec3, float> lamp{.position = {3, 0, 4}, .intensity = {1, 2, 4}};
+    const told_bulb known{lamp};
+    CHECK(reflected({}, known, {0, 0, 0}) == reflected({}, lamp, {0, 0, 0}));
+    CHECK(reflected({}, known, {0, 0, 0}).x > 0);
 }
 
 TEST_CASE("direct_light: a bulb too near for its radiance to be a number is black, never infinite") {

@@ -145,7 +145,7 @@ TEST_CASE(
     CHECK(found->bias == Approx(-0.1));
 }
 
-TEST_CASE("shared_error: of two, deviations add by squares and biases as they are; an estimate's error holds both") {
+TEST_CASE("shared_error: of two, deviations add by squares and biases as they are, and both are in the error") {
     const shared_error sum = shared_error{.common = 0.3, .bias = 0.1} + shared_error{.common = 0.4, .bias = -0.3};
     CHECK(sum.common == Approx(0.5));
     CHECK(sum.bias == Approx(-0.2));
