@@ -115,3 +115,30 @@ TEST_CASE("gather_irradiance: bad rays are counted, and the good ones stand in f
     CHECK(e.irradiance == Approx(2 * pi<float>));
     CHECK(gather_once(incoming, at, numbers_of(4), estimator.shape()) == Approx(2 * pi<float>));
 }
+
+TEST_CASE("gather_hemisphere: the planes that rays meet are told along the axes that are returned") {
+    const vec3<float> wall = glm::normalize(vec3<float>{0.5f, -0.2f, 0.7f});
+    const auto met = [&](const ray<float>& r, const auto&) {
+        const float cosine = glm::dot(r.direction, wall);
+        incoming_light<float, float> light{.radiance = 1};
+        if (cosine > 0.05f) {
+            light.distance = 1 / cosine;
+            light.normal = -wall;
+        }
+        return light;
+    };
+    hemisphere_grid<float, float> grid{hemisphere_shape{}};
+    const gather_point<float> at{.normal = glm::normalize(vec3<float>{0.3f, 0.6f, 0.2f})};
+    const frame<float> axes = gather_hemisphere(met, at, numbers_of(3), {6, 18}, grid);
+    CHECK(glm::length(axes.z - at.normal) < 1e-6f);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < grid.planes().size(); ++i) {
+        if (!(grid.inverse_distance()[i] > 0)) { continue; }
+        ++seen;
+        const auto& plane = grid.planes()[i];
+        // The reciprocal distance of a plane is linear in the direction: here the cosine to the wall.
+        CHECK(glm::length(axes.to_world(plane.slope) - wall) < 1e-4f);
+        CHECK(glm::dot(axes.to_world(plane.direction), wall) == Approx(grid.inverse_distance()[i]).epsilon(1e-4));
+    }
+    CHECK(seen > 50);
+}

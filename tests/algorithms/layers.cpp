@@ -88,6 +88,8 @@ TEST_CASE("layers: a map is seen as albedo / pi times its irradiance, of both si
     CHECK(near.value.x == Approx(0.25).epsilon(0.2));
     CHECK(far.value.x == Approx(2).epsilon(0.2));
     CHECK(seen.error > 0);
+    CHECK(seen.bias == Approx((0.5f * near.bias + 0.25f * far.bias) / pi<float>));
+    CHECK(seen.bias != 0);
     const photon_map<S, float> empty;
     CHECK(map_layer<S, float>{empty}(floor_of(m), up, 1e-6f, numbers, 1).value == S{0});
 }

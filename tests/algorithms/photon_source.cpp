@@ -106,3 +106,33 @@ TEST_CASE("photon_source: what the asker finds himself is left to him") {
     CHECK(source.incoming(down, numbers_of(0)).radiance.x == Approx(1 / pi<float>));
     CHECK(source.incoming(down, numbers_of(0), emission_rule::all).radiance.x == Approx(100 + 1 / pi<float>));
 }
+
+TEST_CASE("photon_source: a point whose disc is cut is read only from where it can be seen") {
+    auto points = floor_points(S{2}, 0.1f);
+    const points_type whole{points};
+    for (auto& p : points) { p.cut = true; }
+    const points_type cut{points};
+    auto scene = floor_of({.diffuse = S{0.5f}});
+    CHECK(photon_source{scene, lamp, cut}.incoming(down, numbers_of(0)).radiance.x == Approx(1 / pi<float>));
+    // A low wall between where the ray lands, at 0.12, and the nearest point, at 0.1.
+    scene.rectangles.push_back({.corner = {0.11f, -1, 0},
+                                .u = {0, 2, 0},
+                                .v = {0, 0, 0.2f},
+                                .normal = {1, 0, 0},
+                                .made_of = {.diffuse = S{0.5f}}});
+    const auto traced = path_tracer{scene, lamp}.incoming(down, numbers_of(0));
+    CHECK(photon_source{scene, lamp, cut}.incoming(down, numbers_of(0)).radiance == traced.radiance);
+    CHECK(photon_source{scene, lamp, whole}.incoming(down, numbers_of(0)).radiance.x == Approx(1 / pi<float>));
+}
+
+TEST_CASE("photon_source: caustics are not read where a map of reflected ones shows them") {
+    const auto scene = floor_of({.diffuse = S{0.5f}});
+    auto points = floor_points(S{2}, 0.1f);
+    for (auto& p : points) { p.caustic = S{4}; }
+    const points_type stored{points};
+    const photon_source source{scene, lamp, stored};
+    for (const auto rule : {emission_rule::all, emission_rule::indirect, emission_rule::no_caustics}) {
+        CHECK(source.incoming(down, numbers_of(0), rule).radiance.x == Approx(3 / pi<float>));
+    }
+    CHECK(source.incoming(down, numbers_of(0), emission_rule::no_reflected).radiance.x == Approx(1 / pi<float>));
+}
