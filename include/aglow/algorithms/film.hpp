@@ -96,7 +96,13 @@ public:
         std::vector<double> common(height_);
         run(height_, [&](std::size_t y) {
             if (stop) { return; }
-            for (std::size_t x = 0; x < width_; ++x) { dropped += take(x, y, eye, integrator, options, common[y]); }
+            // Summed up here: rows next to one another share a line of memory, which threads would take from each
+            // other.
+            double in_common = 0;
+            std::uint64_t left_out = 0;
+            for (std::size_t x = 0; x < width_; ++x) { left_out += take(x, y, eye, integrator, options, in_common); }
+            common[y] = in_common;
+            dropped += left_out;
             const double share = static_cast<double>(++rows) / static_cast<double>(height_);
             if (options.progress && !options.progress(share)) { stop = true; }
         });
