@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <set>
@@ -166,5 +167,60 @@ TEST_CASE("parallel: steps of spread_step meet every place once, and the first f
                 CHECK(std::min(across, count - across) * 24 >= count);
             }
         }
+    }
+}
+
+TEST_CASE("parallel: what threads make is taken in its order, one at a time, whatever order it is made in") {
+    const auto backwards = [](std::size_t count, auto&& task) {
+        while (count-- > 0) { task(count); }
+    };
+    const auto taken = [](const auto& run, std::size_t count) {
+        std::vector<std::size_t> order;
+        std::atomic<int> inside{0};
+        bool alone = true;
+        const auto make = [](std::size_t i) { return std::vector<std::size_t>{i, i * i}; };
+        aglow::make_and_take(run, count, make, [&](std::size_t i, const std::vector<std::size_t>& made) {
+            alone = alone && ++inside == 1;
+            if (made == make(i)) { order.push_back(i); }
+            --inside;
+        });
+        CHECK(alone);
+        return order;
+    };
+    for (const std::size_t count : {0u, 1u, 2u, 1000u}) {
+        std::vector<std::size_t> all(count);
+        for (std::size_t i = 0; i < count; ++i) { all[i] = i; }
+        CHECK(taken(in_sequence{}, count) == all);
+        CHECK(taken(backwards, count) == all);
+        for (const unsigned threads : {2u, 3u, 8u}) { CHECK(taken(own_threads{threads}, count) == all); }
+    }
+}
+
+TEST_CASE("parallel: the first is taken while other threads still make the second") {
+    std::atomic<bool> first_taken{false};
+    const auto make = [&](std::size_t i) {
+        using clock = std::chrono::steady_clock;
+        const auto patience = clock::now() + std::chrono::seconds{20};
+        while (i == 1 && !first_taken && clock::now() < patience) { std::this_thread::yield(); }
+        return first_taken.load();
+    };
+    bool met = false;
+    aglow::make_and_take(own_threads{2}, 2, make, [&](std::size_t i, bool saw_it_taken) {
+        first_taken = true;
+        met = i == 1 && saw_it_taken;
+    });
+    CHECK(met);
+}
+
+TEST_CASE("parallel: where taking throws, nothing behind is taken and the exception comes out") {
+    for (const unsigned threads : {1u, 2u, 8u}) {
+        std::vector<std::size_t> order;
+        const auto take = [&](std::size_t i, std::size_t) {
+            if (i == 5) { throw std::runtime_error("five"); }
+            order.push_back(i);
+        };
+        const auto make = [](std::size_t i) { return i; };
+        CHECK_THROWS_WITH(aglow::make_and_take(own_threads{threads}, 100, make, take), "five");
+        CHECK(order == std::vector<std::size_t>{0, 1, 2, 3, 4});
     }
 }

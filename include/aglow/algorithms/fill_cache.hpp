@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -41,6 +42,7 @@ public:
     using T = typename Cache::scalar;
     using S = typename Cache::spectrum;
     using candidate = cache_candidate<T>;
+    using estimate = irradiance_estimate<S, T>;
 
     cache_filler(Cache& cache, std::span<const candidate> candidates, const Incoming& incoming,
                  const fill_cache_options& options, const E& run)
@@ -72,7 +74,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t batch = 256;
+    static constexpr std::size_t batch = 256;  ///< records from one progress report to the next
 
     /// A record's number in the cache, and the candidate it was made for.
     struct made_record {
@@ -155,42 +157,46 @@ private:
     template <typename Progress>
     void gather(const std::vector<std::size_t>& chosen, Progress& progress) {
         const std::size_t uncovered = chosen.size() + pending_.size();
-        for (std::size_t first = 0; first < chosen.size() && !result_.cancelled; first += batch) {
-            const auto begin = chosen.begin() + static_cast<std::ptrdiff_t>(first);
-            const std::size_t count = std::min(batch, chosen.size() - first);
-            gather_batch({begin, begin + static_cast<std::ptrdiff_t>(count)});
-            const fill_progress now{result_.records, candidates_.size(), uncovered};
-            result_.cancelled = !progress(now);
-        }
-    }
-
-    void gather_batch(const std::vector<std::size_t>& chosen) {
-        const auto estimates = estimates_at(chosen, estimator_, 0);
-        for (std::size_t i = 0; i < chosen.size(); ++i) {
-            const record_status status = cache_.insert(estimates[i], candidates_[chosen[i]].footprint);
+        const auto place = [&](std::size_t i) { return chosen[i]; };
+        const auto insert = [&](std::size_t i, const estimate& e) {
+            const record_status status = cache_.insert(e, candidates_[chosen[i]].footprint);
             ++(status == record_status::inserted ? result_.records : result_.refused);
             if (status == record_status::inserted) { made_.push_back({cache_.size() - 1, chosen[i]}); }
-        }
+        };
+        const auto tell = [&](std::size_t) {
+            return progress(fill_progress{result_.records, candidates_.size(), uncovered});
+        };
+        estimate_each(chosen.size(), place, estimator_, 0, insert, tell);
     }
 
-    [[nodiscard]] std::vector<irradiance_estimate<S, T>> estimates_at(const std::vector<std::size_t>& chosen,
-                                                                      const irradiance_estimator<T>& estimator,
-                                                                      std::uint64_t pass) {
-        std::vector<irradiance_estimate<S, T>> estimates(chosen.size());
-        for_each_block(run_, chosen.size(), 4, [&](std::size_t, std::size_t first, std::size_t last) {
-            gather_workspace<S, T> workspace;
-            for (std::size_t i = first; i < last; ++i) {
-                const candidate& c = candidates_[chosen[i]];
-                const random_numbers<T> numbers{{options_.seed, pass, c.key}};
-                estimates[i] = gather_irradiance(incoming_, c.place, numbers, estimator, workspace);
-                add_unseen(estimates[i], c.place);
-            }
-        });
-        for (const irradiance_estimate<S, T>& e : estimates) {
+    /// Gathers at the candidates `place(i)` in parallel, and hands on what comes of it in order of i while others are
+    /// still gathered: `keep(i, estimate)`. Between batches `tell(done)` may say to stop.
+    template <typename Place, typename Keep, typename Tell>
+    void estimate_each(std::size_t count, const Place& place, const irradiance_estimator<T>& estimator,
+                       std::uint64_t pass, const Keep& keep, const Tell& tell) {
+        std::atomic<bool> stop{result_.cancelled};
+        const auto make = [&](std::size_t i) {
+            return stop ? estimate{} : estimate_at(candidates_[place(i)], estimator, pass);
+        };
+        const auto take = [&](std::size_t i, const estimate& e) {
+            if (stop) { return; }
             result_.rays += e.rays;
             result_.rejected += e.rejected;
-        }
-        return estimates;
+            keep(i, e);
+            const std::size_t done = i + 1;
+            if (done % batch == 0 || done == count) { stop = !tell(done); }
+        };
+        make_and_take(run_, count, make, take);
+        result_.cancelled = stop;
+    }
+
+    [[nodiscard]] estimate estimate_at(const candidate& c, const irradiance_estimator<T>& estimator,
+                                       std::uint64_t pass) const {
+        gather_workspace<S, T> workspace;
+        const random_numbers<T> numbers{{options_.seed, pass, c.key}};
+        estimate e = gather_irradiance(incoming_, c.place, numbers, estimator, workspace);
+        add_unseen(e, c.place);
+        return e;
     }
 
     /// Gathers anew, with more rays, where those around scatter.
@@ -217,16 +223,15 @@ private:
     template <typename Progress>
     void replace(std::span<const made_record> chosen, std::uint32_t times, Progress& progress) {
         const irradiance_estimator<T> finer{hemisphere_of(times * options_.rays), parts()};
-        for (std::size_t first = 0; first < chosen.size() && !result_.cancelled; first += batch) {
-            const auto some = chosen.subspan(first, std::min(batch, chosen.size() - first));
-            std::vector<std::size_t> places;
-            for (const made_record& m : some) { places.push_back(m.candidate); }
-            const auto estimates = estimates_at(places, finer, times);
-            for (std::size_t i = 0; i < some.size(); ++i) { (void)cache_.replace(some[i].record, estimates[i]); }
-            sharpened_ += some.size() * times;
+        const auto place = [&](std::size_t i) { return chosen[i].candidate; };
+        const auto put = [&](std::size_t i, const estimate& e) { (void)cache_.replace(chosen[i].record, e); };
+        const std::size_t before = sharpened_;
+        const auto tell = [&](std::size_t done) {
+            sharpened_ = before + done * times;
             const double share = static_cast<double>(sharpened_) / static_cast<double>(to_sharpen_);
-            result_.cancelled = !progress(fill_progress{result_.records, candidates_.size(), pending_.size(), share});
-        }
+            return progress(fill_progress{result_.records, candidates_.size(), pending_.size(), share});
+        };
+        estimate_each(chosen.size(), place, finer, times, put, tell);
     }
 
     Cache& cache_;
@@ -257,8 +262,9 @@ struct go_on {
 }  // namespace detail
 
 /// Adds records to `cache` until all `candidates` are covered. Candidates are considered in the given order; `incoming`
-/// answers gather rays (see `IncomingLight`, `KnowsUnseen`). `progress(fill_progress)` may return false to stop early:
-/// what was gathered stays. Throws `std::invalid_argument` for options that make no sense.
+/// answers gather rays (see `IncomingLight`, `KnowsUnseen`) and must not ask `cache`, which grows meanwhile.
+/// `progress(fill_progress)`, told from any thread, one call at a time, may return false to stop early: what was
+/// inserted stays. Throws `std::invalid_argument` for options that make no sense.
 template <Spectrum S, std::floating_point T, record_features F, IncomingLight<T, random_numbers<T>> Incoming,
           Executor E = in_sequence, std::predicate<const fill_progress&> Progress = detail::go_on>
 fill_result fill_cache(irradiance_cache<S, T, F>& cache,

@@ -45,7 +45,7 @@ struct gather_point {
 /// A thread's own memory between gathers.
 template <Spectrum S, std::floating_point T>
 struct gather_workspace {
-    hemisphere_grid<S, T> grid{hemisphere_shape{}};
+    hemisphere_grid<S, T> grid{hemisphere_shape{2, 3}};  // cut anew by each gather
 };
 
 namespace detail {

@@ -8,7 +8,9 @@
 #include <exception>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -96,6 +98,46 @@ template <Executor E, typename Body>
 void for_each_block(const E& run, std::size_t count, std::size_t block, Body&& body) {
     const std::size_t blocks = count / block + (count % block != 0 ? 1 : 0);
     run(blocks, [&](std::size_t i) { body(i, i * block, i * block + std::min(block, count - i * block)); });
+}
+
+/// Hands what tasks make, in parallel, to one taker in the order of their numbers, each as soon as all before it are
+/// taken: what has to be done in turn is done while others still work.
+template <typename Made, typename Take>
+class in_turn {
+public:
+    in_turn(std::size_t count, Take& take) : waiting_(count), take_{take} {}
+
+    /// Whoever brings what is next takes it, and all that waits behind it; others put theirs down and go on.
+    void bring(std::size_t i, Made made) {
+        std::unique_lock lock{guard_};
+        waiting_[i].emplace(std::move(made));
+        if (taken_) { return; }
+        taken_ = true;  // stays so where `take` throws: nothing goes past what was lost
+        while (next_ < waiting_.size() && waiting_[next_]) {
+            const std::size_t now = next_++;
+            Made one = std::move(*waiting_[now]);
+            waiting_[now].reset();
+            lock.unlock();
+            take_(now, std::move(one));
+            lock.lock();
+        }
+        taken_ = false;
+    }
+
+private:
+    std::mutex guard_{};
+    std::vector<std::optional<Made>> waiting_;
+    std::size_t next_{0};
+    bool taken_{false};  ///< whether some thread takes
+    Take& take_;
+};
+
+/// Runs `make(i)` for every i in [0, count) in parallel, and `take(i, made)` for what came of it in order of i, one at
+/// a time, on any of the threads: the same for any number of them. `take` must not touch what `make` reads.
+template <Executor E, typename Make, typename Take>
+void make_and_take(const E& run, std::size_t count, Make&& make, Take&& take) {
+    in_turn<std::invoke_result_t<Make&, std::size_t>, Take> row{count, take};
+    run(count, [&](std::size_t i) { row.bring(i, make(i)); });
 }
 
 }  // namespace aglow
