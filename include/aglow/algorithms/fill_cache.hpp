@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <concepts>
@@ -21,8 +22,10 @@
 #include <aglow/algorithms/fill_options.hpp>
 #include <aglow/algorithms/gather.hpp>
 #include <aglow/containers/octree.hpp>
+#include <aglow/containers/sphere_search.hpp>
 #include <aglow/core/parallel.hpp>
 #include <aglow/core/random.hpp>
+#include <aglow/core/simd.hpp>
 #include <aglow/estimators/irradiance_cache.hpp>
 
 namespace aglow {
@@ -34,6 +37,46 @@ concept KnowsUnseen = requires(const F& incoming, const gather_point<T>& at) {
 };
 
 namespace detail {
+
+/// Numbered places, each of which keeps others within `spacing` of it away where `bars(number, place)`.
+template <typename T, typename Bars>
+class spaced_places {
+public:
+    spaced_places(T spacing, const Bars& bars) : spacing_{spacing}, bars_{bars} {}
+
+    [[nodiscard]] bool has_room(const gather_point<T>& at) {
+        const auto bars = [&](const place& p) {
+            return simd::distance2(p.position, at.position) < limit2_of(spacing_) && bars_(p.number, at);
+        };
+        if (std::any_of(lately_.begin(), lately_.begin() + std::min(met_, few), bars)) { return false; }
+        bool room = true;
+        near_.visit_covering(at.position, [&](const place& p) {
+            room = !bars_(p.number, at);
+            if (!room) { lately_[static_cast<std::size_t>(met_++ % few)] = p; }
+            return room;
+        });
+        return room;
+    }
+
+    void add(std::size_t number, const gather_point<T>& at) {
+        // What no tree can hold is gathered and refused at the door of the cache.
+        (void)near_.insert({number, at.position}, at.position, spacing_);
+    }
+
+private:
+    struct place {
+        std::size_t number;
+        vec3<T> position;
+    };
+    static constexpr std::ptrdiff_t few = 4;
+
+    T spacing_;
+    const Bars& bars_;
+    octree<place, T> near_{};
+    // Candidates of a row lie along it: what was in the way of the last ones mostly is again.
+    std::array<place, few> lately_{};
+    std::ptrdiff_t met_{0};
+};
 
 /// Fills one cache; see `fill_cache`.
 template <typename Cache, typename Incoming, typename E>
@@ -121,17 +164,14 @@ private:
     [[nodiscard]] std::vector<std::size_t> thinned(T spacing) {
         std::vector<std::size_t> taken;
         std::vector<std::size_t> rest;
-        octree<std::size_t, T> near;
+        const auto bars = [&](std::size_t other, const gather_point<T>& place) {
+            return alike(candidates_[other].place, place, spacing);
+        };
+        spaced_places<T, decltype(bars)> apart{spacing, bars};
         for (const std::size_t i : pending_) {
-            const gather_point<T>& p = candidates_[i].place;
-            bool free = true;
-            near.visit_covering(p.position, [&](std::size_t other) {
-                free = !alike(candidates_[other].place, p, spacing);
-                return free;
-            });
-            if (free && !full_with(taken.size())) {
-                // What no tree can hold is gathered and refused at the door of the cache.
-                (void)near.insert(i, p.position, spacing);
+            const gather_point<T>& place = candidates_[i].place;
+            if (apart.has_room(place) && !full_with(taken.size())) {
+                apart.add(i, place);
                 taken.push_back(i);
             } else {
                 rest.push_back(i);
