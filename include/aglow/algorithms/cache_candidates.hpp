@@ -88,7 +88,10 @@ template <Scene World, typename Eye, Executor Run = in_sequence>
         if (options.progress && !options.progress(share)) { stop = true; }
     });
     candidates all;
-    for (candidates& row : rows) { all.insert(all.end(), row.begin(), row.end()); }
+    std::size_t count = 0;
+    for (const candidates& row : rows) { count += row.size(); }
+    all.reserve(count);
+    for (const candidates& row : rows) { all.insert(all.end(), row.begin(), row.end()); }
     return all;
 }
 

@@ -221,7 +221,7 @@ private:
         std::vector<landed_photon<S, T>> photons;
         photons.reserve(count);
         for (const auto& block : blocks) {
-            for (const landed_photon<S, T>& p : block.landed[k]) { photons.push_back(p); }
+            photons.insert(photons.end(), block.landed[k].begin(), block.landed[k].end());
         }
         const T scale = map.paths == 0 ? T(0) : T(1) / static_cast<T>(map.paths);
         static_cast<photon_map<S, T>&>(map) = photon_map<S, T>{photons, scale, run_};

@@ -51,10 +51,12 @@ public:
         } else {
             tree_ = kd_tree<T>{sound, [&](std::uint32_t i) { return photons[i].position; }, run};
             photons_ = std::vector<Item>(tree_.size());
-            for (std::size_t slot = 0; slot < photons_.size(); ++slot) {
-                photons_[slot] = photons[sound[tree_.order()[slot]]].what;
-                photons_[slot].power = photons_[slot].power * factor;
-            }
+            for_each_block(run, photons_.size(), at_once, [&](std::size_t, std::size_t first, std::size_t last) {
+                for (std::size_t slot = first; slot < last; ++slot) {
+                    photons_[slot] = photons[sound[tree_.order()[slot]]].what;
+                    photons_[slot].power = photons_[slot].power * factor;
+                }
+            });
         }
         dropped_ = photons.size() - tree_.size();
         tree_.forget_order();
@@ -133,6 +135,7 @@ public:
     }
 
 private:
+    static constexpr std::size_t at_once = 8192;  ///< photons of one task
     struct nothing {};
     /// Whether items are rounded to the cells of a box.
     static constexpr bool packs =
@@ -147,7 +150,7 @@ private:
         for (const std::uint32_t i : sound) { box.add(photons[i].position); }
         cells_ = place_cells<T>{box};
         std::vector<Item> packed(sound.size());
-        for_each_block(run, sound.size(), 4096, [&](std::size_t, std::size_t first, std::size_t last) {
+        for_each_block(run, sound.size(), at_once, [&](std::size_t, std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
                 const landed_photon<S, T>& p = photons[sound[i]];
                 packed[i] = Item{p, S(p.what.power * factor), cells_, sound[i]};
@@ -155,7 +158,9 @@ private:
         });
         tree_ = kd_tree<T>{packed, [&](const Item& p) { return p.position(cells_); }, run};
         photons_ = std::vector<Item>(tree_.size());
-        for (std::size_t slot = 0; slot < photons_.size(); ++slot) { photons_[slot] = packed[tree_.order()[slot]]; }
+        for_each_block(run, photons_.size(), at_once, [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t slot = first; slot < last; ++slot) { photons_[slot] = packed[tree_.order()[slot]]; }
+        });
     }
 
     template <typename Other>
