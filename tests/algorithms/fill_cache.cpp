@@ -274,6 +274,55 @@ TEST_CASE("fill_cache: candidates that are no places, and light that is no numbe
     CHECK(dark.size() == 0);
 }
 
+TEST_CASE("fill_cache: places in rows keep apart as asking all that were taken before says, and only from their like") {
+    random_sampler<float> random{5};
+    std::vector<gather_point<float>> places;
+    for (int i = 0; i < 2500; ++i) {
+        const rgb at{static_cast<float>(i % 50) + random.next_1d(), static_cast<float>(i / 50), random.next_1d()};
+        places.push_back({at, random.next_1d() < 0.8f ? rgb{0, 0, 1} : rgb{1, 0, 0}});
+    }
+    for (const float spacing : {0.5f, 2.0f, 7.0f, 100.0f}) {
+        const auto alike = [&](std::size_t other, const gather_point<float>& here) {
+            return places[other].normal == here.normal;
+        };
+        detail::spaced_places<float, decltype(alike)> apart{spacing, alike};
+        std::vector<std::size_t> taken;
+        std::size_t differ = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const bool room = std::none_of(taken.begin(), taken.end(), [&](std::size_t other) {
+                const double distance = glm::distance(point3(places[other].position), point3(places[i].position));
+                return distance <= static_cast<double>(spacing) && alike(other, places[i]);
+            });
+            differ += apart.has_room(places[i]) != room;
+            if (!room) { continue; }
+            apart.add(i, places[i]);
+            taken.push_back(i);
+        }
+        CHECK(differ == 0);
+        CHECK(taken.size() > 1);
+    }
+}
+
+TEST_CASE("fill_cache: stopped at any report, any number of threads keeps the same records and counts the same rays") {
+    const auto filled = [](unsigned threads, int reports, cache& c) {
+        int left = reports;
+        return fill_cache(c, around(3000), flickering{}, {.rays = 40}, own_threads{threads},
+                          [&](const fill_progress&) { return --left > 0; });
+    };
+    for (const int reports : {1, 2, 4, 7}) {
+        cache one{1.732f};
+        const fill_result alone = filled(1, reports, one);
+        for (const unsigned threads : {2u, 3u, 8u}) {
+            cache other{1.732f};
+            const fill_result many = filled(threads, reports, other);
+            CHECK(same(one, other));
+            CHECK(many.rays == alone.rays);
+            CHECK(many.records == alone.records);
+            CHECK(many.cancelled == alone.cancelled);
+        }
+    }
+}
+
 TEST_CASE("fill_cache: stops when told to, and never beyond the most records asked for") {
     const auto where = around(3000);
     cache c{1.732f};
