@@ -73,3 +73,16 @@ TEST_CASE("bounds: NaN added to a box changes nothing") {
     CHECK(box.low == vec3<float>{1, 2, 3});
     CHECK(box.high == vec3<float>{1, 2, 3});
 }
+
+TEMPLATE_TEST_CASE("bounds: coordinates lose an ulp of the farthest corner beside the diagonal, and all at a point", "",
+                   float, double) {
+    using T = TestType;
+    const T ulp = std::numeric_limits<T>::epsilon();
+    CHECK(aglow::coordinate_loss(aglow::bounds<T>{}) == 0);
+    CHECK(aglow::coordinate_loss(aglow::bounds<T>{{1, 2, 3}, {1, 2, 3}}) == 1);
+    CHECK(aglow::coordinate_loss(aglow::bounds<T>{{0, 0, 0}, {0, 0, 0}}) == 1);
+    CHECK(aglow::coordinate_loss(aglow::bounds<T>{{-1024, 0, 0}, {-1021, 4, 0}}) == 1024 * ulp / 5);
+    CHECK(aglow::coordinate_loss(aglow::bounds<T>{{0, 1020, 0}, {3, 1024, 0}}) == 1024 * ulp / 5);
+    // Two neighbouring numbers are not told from one.
+    CHECK(aglow::coordinate_loss(aglow::bounds<T>{{1, 0, 0}, {1 + ulp, 0, 0}}) == 1);
+}
