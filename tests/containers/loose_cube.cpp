@@ -43,7 +43,13 @@ TEMPLATE_TEST_CASE("loose_cube: neither a wider sphere is held nor a centre on a
     using T = TestType;
     const detail::loose_cube<T> cube{vec3<T>{2}, T(1)};
     CHECK(cube.holds(vec3<T>{1}, 1));
-    CHECK_FALSE(cube.holds(vec3<T>{3}, 0));
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3<T> upper{2}, below{2};
+        upper[axis] = 3;
+        below[axis] = std::nextafter(T(1), T(0));
+        CHECK_FALSE(cube.holds(upper, 0));
+        CHECK_FALSE(cube.holds(below, 0));
+    }
     CHECK_FALSE(cube.holds(vec3<T>{1}, T(1.01)));
 }
 

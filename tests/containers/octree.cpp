@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <random>
 #include <string>
 #include <thread>
@@ -302,6 +303,40 @@ TEST_CASE("octree: the border of a sphere belongs to it", "[octree]") {
     CHECK(covering(tree, vec3<float>{std::nextafter(1.5f, 2.0f), 1, 1}).empty());
 }
 
+TEMPLATE_TEST_CASE("octree: borders that lie on the grid of cubes belong to their spheres, fresh and settled",
+                   "[octree]", float, double) {
+    using T = TestType;
+    // Centres, radii and points are sixteenths, so that distances along an axis are exact.
+    std::mt19937 random{30};
+    const auto sixteenth = [&](unsigned range) { return static_cast<T>(random() % range) / T(16); };
+    balls<T> spheres;
+    for (int i = 0; i < 1500; ++i) {
+        const vec3<T> centre{sixteenth(64), sixteenth(64), sixteenth(64)};
+        spheres.push_back({centre, sixteenth(6) + T(1) / T(16)});
+    }
+    octree<int, T> tree = octree_of(spheres);
+    const auto radius_of = [&](int i) { return spheres[static_cast<std::size_t>(i)].radius; };
+    for (int settled = 0; settled < 2; ++settled) {
+        int wrong = 0;
+        for (int q = 0; q < 600; ++q) {
+            const ball<T>& s = spheres[static_cast<std::size_t>(q)];
+            vec3<T> p = s.centre;
+            p[q % 3] += q % 2 == 0 ? s.radius : -s.radius;
+            std::vector<int> covers, near, shrunk;
+            for (int i = 0; i < 1500; ++i) {
+                const T distance2 = aglow::distance2(spheres[static_cast<std::size_t>(i)].centre, p);
+                if (distance2 <= aglow::square(radius_of(i))) { covers.push_back(i); }
+                if (distance2 <= aglow::square(s.radius)) { near.push_back(i); }
+            }
+            tree.visit_covering(p, radius_of, [&](int i) { shrunk.push_back(i); });
+            wrong += covering(tree, p) != covers || shrunk != covers || within(tree, p, s.radius) != near;
+        }
+        CHECK(wrong == 0);
+        // Of radii that have grown, which they must not, none is taken over.
+        tree.settle([](int) { return T(2); });
+    }
+}
+
 TEST_CASE("octree: a visitor that asks for it hears each item's number, in order", "[octree]") {
     octree<int> tree;
     for (int i = 0; i < 100; ++i) { tree.insert(i, {0.01f * static_cast<float>(i), 0, 0}, 0.3f); }
@@ -350,6 +385,45 @@ TEST_CASE("octree: items that have shrunk are judged by their present radius", "
             found, brute_force(spheres, s.centre + vec3<float>{0.01f, 0, 0}, [](const auto& b) { return b.radius; }));
     }
     CHECK(wrong == 0);
+}
+
+TEST_CASE("octree: of thousands of items at one place each is judged by its own present radius", "[octree]") {
+    octree<int> tree;
+    for (int i = 0; i < 5000; ++i) { tree.insert(i, {3, 0, 0}, 5); }
+    for (int settled = 0; settled < 2; ++settled) {
+        std::vector<int> found;
+        tree.visit_covering(
+            vec3<float>{0}, [](int i) { return i % 2 == 0 ? 4.0f : 1.0f; }, [&](int i) { found.push_back(i); });
+        CHECK(found.size() == 2500);
+        CHECK(std::all_of(found.begin(), found.end(), [](int i) { return i % 2 == 0; }));
+        tree.settle();
+    }
+}
+
+TEST_CASE("octree: items that settle one by one take little more memory than all at once", "[octree]") {
+    octree<int> one_by_one, at_once;
+    for (const ball<float>& s : uniform_balls<float>(1000, 31)) {
+        one_by_one.insert(0, s.centre, s.radius);
+        one_by_one.settle_latest([](int) { return 1.0f; });
+        at_once.insert(0, s.centre, s.radius);
+    }
+    at_once.settle();
+    CHECK(one_by_one.bytes() < 2 * at_once.bytes());
+}
+
+TEST_CASE("octree: every item is destroyed once, with the octree or with the one that took it", "[octree]") {
+    const auto item = std::make_shared<int>(0);
+    for (const int count : {0, 1, 5, 999}) {
+        octree<std::shared_ptr<int>> tree;
+        for (int i = 0; i < count; ++i) { tree.insert(item, vec3<float>{float(i)}, 1.0f); }
+        CHECK(item.use_count() == count + 1);
+        {
+            octree<std::shared_ptr<int>> taken{std::move(tree)};
+            taken.settle();
+            CHECK(item.use_count() == count + 1);
+        }
+        CHECK(item.use_count() == 1);
+    }
 }
 
 TEMPLATE_TEST_CASE("octree: scaling by powers of two changes neither what is found nor the order", "[octree]", float,
