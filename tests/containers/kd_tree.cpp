@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -95,6 +97,11 @@ std::vector<item<T>> sorted(const kd_tree<T>& tree, const kd_neighbours<T>& foun
 template <typename T>
 kd_tree<T> tree_of(const std::vector<vec3<T>>& points) {
     return kd_tree<T>{points, [](const vec3<T>& p) { return p; }};
+}
+
+template <typename T>
+std::tuple<T, T, T> place_of(const vec3<T>& p) {
+    return {p.x, p.y, p.z};
 }
 
 const auto all_of_them = [](std::uint32_t) { return true; };
@@ -235,6 +242,24 @@ TEMPLATE_TEST_CASE("kd_tree: the nearest one is the first of brute force, ties b
     }
 }
 
+TEMPLATE_TEST_CASE("kd_tree: of points at one place the nearest is the one that came first", "[kd_tree]", float,
+                   double) {
+    using T = TestType;
+    for (const std::string shape : {"one point", "repeated", "lattice", "walls"}) {
+        const auto points = cloud<T>(shape, 5000);
+        const auto tree = tree_of(points);
+        std::map<std::tuple<T, T, T>, std::uint32_t> first;
+        for (std::uint32_t i = 0; i < points.size(); ++i) { first.insert({place_of(points[i]), i}); }
+        int wrong = 0;
+        for (const vec3<T>& p : points) {
+            const auto found = tree.nearest_one(p);
+            wrong += !found || found->distance2 != 0 || tree.order()[found->slot] != first.at(place_of(p));
+        }
+        CAPTURE(shape);
+        CHECK(wrong == 0);
+    }
+}
+
 TEMPLATE_TEST_CASE("kd_tree: all strictly within a radius are visited once, in order", "[kd_tree]", float, double) {
     using T = TestType;
     for (const std::string& shape : shapes) {
@@ -318,6 +343,24 @@ TEMPLATE_TEST_CASE("kd_tree: every item has one slot and keeps its position", "[
             REQUIRE(tree.box().high == box.high);
             std::sort(seen.begin(), seen.end());
             for (std::uint32_t i = 0; i < n; ++i) { REQUIRE(seen[i] == i); }
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: points at the same place keep the order they came in", "[kd_tree]", float, double) {
+    using T = TestType;
+    for (const std::string shape : {"one point", "repeated", "lattice", "walls"}) {
+        for (const std::size_t n : sizes) {
+            const auto tree = tree_of(cloud<T>(shape, n));
+            std::map<std::tuple<T, T, T>, std::uint32_t> last;
+            bool in_order = true;
+            for (kd_slot slot = 0; slot < n; ++slot) {
+                const auto [known, is_new] = last.insert({place_of(tree.position(slot)), tree.order()[slot]});
+                in_order = in_order && (is_new || known->second < tree.order()[slot]);
+                known->second = tree.order()[slot];
+            }
+            CAPTURE(shape, n);
+            CHECK(in_order);
         }
     }
 }
