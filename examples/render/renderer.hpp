@@ -304,9 +304,8 @@ private:
         }
         if (!maps) { return; }
         const auto add = [&](const char* name, const auto& map) {
-            if (map.size() > 0) {
-                result_.add_fact(std::string{"photons, "} + name, map.size());
-            } else if (!map.why.empty()) {
+            if (map.size() > 0) { result_.add_fact(std::string{"photons, "} + name, map.size()); }
+            if (!map.why.empty() && map.why != "full") {
                 result_.notes.push_back(std::string{name} + " map: " + map.why);
             }
         };

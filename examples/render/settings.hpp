@@ -77,6 +77,7 @@ private:
         wanted.direct = options_.direct_photons.value_or(wanted.direct);
         wanted.caustic = options_.caustic_photons.value_or(wanted.caustic);
         wanted.indirect = options_.indirect_photons.value_or(wanted.indirect);
+        if (options_.indirect_photons) { wanted.full_share = 0; }  // who names a number wants them all
         wanted.seed = options_.seed;
         return wanted;
     }

@@ -58,6 +58,15 @@ toy_scene<S, float> sphere(float albedo, float port = 2) {
 
 const bulb<S, float> lamp{.intensity = {1, 2, 3}};
 
+/// A dark floor and a ball on it, far from all walls: little of what they reflect meets the other.
+toy_scene<S, float> open_floor() {
+    const support::material<S> dark{.diffuse = S{0.2f}};
+    return {
+        .balls = {{.centre = {0.5f, 0, -0.7f}, .radius = 0.3f, .made_of = dark}},
+        .rectangles = {{.corner = {-1, -1, -1}, .u = {2, 0, 0}, .v = {0, 2, 0}, .normal = {0, 0, 1}, .made_of = dark}},
+        .lobes = lobe_set::diffuse_reflection};
+}
+
 }  // namespace
 
 TEST_CASE("trace_photons: 1, 2, 3 and 8 threads and any executor land the same photons") {
@@ -223,6 +232,86 @@ TEST_CASE("trace_photons: light too rare for its number of photons is kept, scal
     const auto more = trace_photons(r.scene, r.light, {.caustic = 50000, .seed = 1});
     CHECK(more.caustic.status == map_status::full);
     CHECK(total(maps.caustic).x == Approx(total(more.caustic).x).epsilon(0.1));
+}
+
+TEST_CASE("trace_photons: indirect light that is a small share of all gets as many photons as its noise is worth") {
+    const auto open = open_floor();
+    const photon_options wanted{.direct = 2000, .indirect = 100'000};
+    photon_options all = wanted;
+    all.full_share = 0;
+    all.most_paths = 4'000'000;
+    const auto maps = trace_photons(open, lamp, wanted);
+    const auto sought = trace_photons(open, lamp, all);
+    CHECK(sought.indirect.paths == all.most_paths);
+    CHECK(maps.indirect.paths < sought.indirect.paths / 8);
+    CHECK(maps.indirect.status == map_status::partly);
+    CHECK(maps.indirect.why.find("partly filled, one part in ") == 0);
+    CHECK(sought.indirect.why.find("partly filled, all ") == 0);
+    CHECK(maps.direct.status == map_status::full);
+    CHECK(same(maps.direct, sought.direct));
+    // What all light strays by on account of the map is no more than where it is full and just worth it.
+    const double direct = double(total(sought.direct).x);
+    const double indirect = double(total(sought.indirect).x);
+    const double share = indirect / (direct + indirect);
+    REQUIRE(share < wanted.full_share / 4);
+    const double worth = wanted.full_share / std::sqrt(double(wanted.indirect));
+    CHECK(share / std::sqrt(double(maps.indirect.size())) < worth);
+    // As many paths as where the pilot finds nothing, even where fewer would do.
+    CHECK(maps.indirect.paths >= 32 * wanted.pilot_paths);
+}
+
+TEST_CASE("trace_photons: the power of indirect photons that were not all sought is right in the mean") {
+    const auto open = open_floor();
+    const photon_options all{.indirect = 1, .full_share = 0, .paths = {.indirect = 2'000'000}};
+    const auto truth = trace_photons(open, lamp, all).indirect;
+    sample_mean mean;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        const auto maps = trace_photons(open, lamp, {.indirect = 20'000, .pilot_paths = 512, .seed = seed});
+        REQUIRE(maps.indirect.status == map_status::partly);
+        mean.add(double(total(maps.indirect).x));
+    }
+    CAPTURE(mean.mean(), mean.standard_error(), total(truth).x, truth.common);
+    CHECK(std::abs(mean.mean() - double(total(truth).x)) <=
+          4 * std::hypot(mean.standard_error(), truth.common * double(total(truth).x)));
+}
+
+TEST_CASE("trace_photons: rare indirect light is sought by the same paths on 1, 2, 3 and 8 threads") {
+    const photon_options options{.direct = 500, .indirect = 20'000, .pilot_paths = 1024};
+    const auto one = trace_photons(open_floor(), lamp, options);
+    REQUIRE(one.indirect.status == map_status::partly);
+    REQUIRE(one.indirect.size() > 10);
+    for (const unsigned threads : {2u, 3u, 8u}) {
+        CHECK(same(one.indirect, trace_photons(open_floor(), lamp, options, own_threads{threads}).indirect));
+    }
+}
+
+TEST_CASE("trace_photons: where indirect light has its share, the maps are those of a search for all photons") {
+    const auto r = room();
+    photon_options options{.direct = 500, .caustic = 500, .indirect = 2000, .reflected = 500};
+    const auto maps = trace_photons(r.scene, r.light, options);
+    options.full_share = 0;
+    const auto all = trace_photons(r.scene, r.light, options);
+    CHECK(same(maps.direct, all.direct));
+    CHECK(same(maps.caustic, all.caustic));
+    CHECK(same(maps.indirect, all.indirect));
+    CHECK(same(maps.reflected, all.reflected));
+}
+
+TEST_CASE("trace_photons: reflected caustics are worth their share of the caustics, not of all light") {
+    // In the room caustics are rare, but what they light up sends them on as brightly as any wall.
+    const auto r = room();
+    const photon_options options{.caustic = 5000, .reflected = 2500, .full_share = 0.2};
+    const auto maps = trace_photons(r.scene, r.light, options);
+    const double reflected = double(total(maps.reflected).x);
+    const double caustic = double(total(maps.caustic).x);
+    REQUIRE(reflected / (reflected + caustic) > 0.2);
+    CHECK(maps.reflected.status == map_status::full);
+    photon_options choosy = options;
+    choosy.full_share = 4 * reflected / (reflected + caustic);
+    choosy.pilot_paths = 128;
+    const auto fewer = trace_photons(r.scene, r.light, choosy);
+    CHECK(fewer.reflected.status == map_status::partly);
+    CHECK(fewer.reflected.paths < maps.reflected.paths / 4);
 }
 
 TEST_CASE("trace_photons: the power of a few photons is right in the mean, however few were asked for") {

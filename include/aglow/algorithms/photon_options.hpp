@@ -30,6 +30,11 @@ struct photon_options {
                                          ///< bounce, in a map of their own as well; needs a caustic map
     std::size_t most_paths{16'000'000};  ///< paths emitted at the most, whatever is still wanted, the pilot apart
     std::size_t pilot_paths{8192};       ///< paths of the pilot that finds out how many are needed
+    double full_share{0.25};             ///< share of all light from which on indirect light is worth all photons that
+                                         ///< are wanted (closed rooms have about a half); below, as many as bring no
+                                         ///< more noise, share / sqrt(photons), and the paths of 32 pilots at least.
+                                         ///< Likewise reflected caustics beside the caustics. 0 seeks all, as for a
+                                         ///< dim room behind a garden in the sun
     photon_paths paths{};                ///< of each map, where known from an earlier pass; 0: the pilot finds out
     std::uint32_t most_bounces{0};       ///< depth cap; 0 for none: roulette ends paths without bias. Where half of
                                          ///< the pilot's paths meet 4096 surfaces, that is the cap: `capped` tells
@@ -42,7 +47,7 @@ struct photon_options {
 enum class map_status {
     left_out,  ///< not wanted, or the scene cannot have such light
     full,      ///< about as many photons as wanted
-    partly,    ///< fewer than wanted: the light is rare and the paths were used up, or it was stopped
+    partly,    ///< fewer than wanted: the light is rare and not worth more paths, or has no more; or it was stopped
     empty      ///< none landed
 };
 

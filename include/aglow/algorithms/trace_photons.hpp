@@ -1,7 +1,8 @@
 // Photon maps from a scene and its lights: direct, caustic and indirect light, each with its own number of photons.
 //
 // Jensen 1996. How many paths a map needs is found by a pilot whose photons are thrown away, so the number is fixed
-// before the first photon is stored and the estimate stays unbiased (storing until full is k/(k-1) too bright).
+// before the first photon is stored and the estimate stays unbiased (storing until full is k/(k-1) too bright). The
+// pilot also finds how much of the light is indirect, and so how much its map's noise matters.
 #pragma once
 
 #include <algorithm>
@@ -30,6 +31,7 @@ struct photon_block {
     std::array<std::size_t, 4> paths{};  ///< walked here that could have stored photons of each history
     std::array<double, 4> flux{};        ///< stored power; its squares path by path tell how sure the whole is
     std::array<double, 4> flux2{};       ///< (photons of one path are no independent witnesses)
+    std::array<double, 4> met{};         ///< by a pilot: power of all that landed, wanted or not
     energy_ledger<S> ledger{};
 };
 
@@ -121,17 +123,44 @@ private:
         if (unknown == kinds{}) { return; }
         const kinds found = pilot(unknown);
         for (std::size_t kind = 0; kind < 4; ++kind) {
-            if (unknown[kind] != 0) { paths_[kind] = paths_needed(wanted_[kind], found[kind]); }
+            if (unknown[kind] != 0) { paths_[kind] = paths_worth(kind, found[kind]); }
         }
     }
 
+    /// Paths for the photons that are wanted of a kind, where the pilot's paths would have stored `found`: fewer where
+    /// their share of the light is so small that the noise of them all is no more than what full maps bring elsewhere,
+    /// but as many as are walked in search of what the pilot did not find.
+    [[nodiscard]] std::size_t paths_worth(std::size_t kind, std::size_t found) {
+        const double wanted = static_cast<double>(wanted_[kind]);
+        const std::size_t all = paths_needed(wanted, found);
+        share_[kind] = share_of_light(kind);
+        if (!is_spared(kind)) { return all; }
+        // Noise of all light: share / sqrt(photons).
+        const double enough = wanted * square(share_[kind] / options_.full_share);
+        return std::min(all, std::max(paths_needed(enough, found), paths_needed(wanted, 0)));
+    }
+
+    /// Whether light of a kind was met, and so little that it need not be sought for long.
+    [[nodiscard]] bool is_spared(std::size_t kind) const {
+        return share_[kind] > 0 && share_[kind] < options_.full_share;
+    }
+
+    /// The share of light once more reflected in itself and the light that it comes from, by the pilot; 1 for other.
+    [[nodiscard]] double share_of_light(std::size_t kind) const {
+        double from = 0;
+        if (kind == index(photon_history::reflected)) { from = met_[index(photon_history::caustic)]; }
+        if (kind == index(photon_history::indirect)) {
+            from = met_[index(photon_history::direct)] + met_[index(photon_history::caustic)];
+        }
+        return from > 0 ? met_[kind] / (from + met_[kind]) : 1;
+    }
+
     /// Paths for `wanted` photons, where the pilot's paths would have stored `found`.
-    [[nodiscard]] std::size_t paths_needed(std::size_t wanted, std::size_t found) const {
+    [[nodiscard]] std::size_t paths_needed(double wanted, std::size_t found) const {
         const double pilots = static_cast<double>(options_.pilot_paths);
         const double most = static_cast<double>(options_.most_paths);
         const double hard = endless_ ? pilots : 32 * pilots;
-        const double needed =
-            found == 0 ? hard : std::ceil(static_cast<double>(wanted) * pilots / static_cast<double>(found));
+        const double needed = found == 0 ? hard : std::ceil(wanted * pilots / static_cast<double>(found));
         return static_cast<std::size_t>(std::min(needed, most));
     }
 
@@ -146,7 +175,10 @@ private:
         energy_ledger<S> ledger;
         for (const auto& block : blocks) {
             ledger += block.ledger;
-            for (std::size_t kind = 0; kind < 4; ++kind) { found[kind] += block.counts[kind]; }
+            for (std::size_t kind = 0; kind < 4; ++kind) {
+                found[kind] += block.counts[kind];
+                met_[kind] += block.met[kind];
+            }
         }
         endless_ = options_.most_bounces == 0 && 2 * ledger.capped > ledger.emitted;
         if (!endless_) { most_bounces_ = options_.most_bounces; }
@@ -178,6 +210,7 @@ private:
         walk_photon(scene_, lights_, numbers, most_bounces_, ledger,
                     [&](const auto& hit, const vec3<T>& wi, const S& power, photon_history history) {
                         const std::size_t kind = map_of(history);
+                        if (piloting_ && is_radiance(power)) { meet(power, kind, history, into); }
                         if (i < paths[kind]) { store(hit, wi, power, into, kind); }
                         if (history == photon_history::reflected && i < paths[index(history)]) {
                             store(hit, wi, power, into, index(history));
@@ -185,6 +218,13 @@ private:
                         return is_wanted_after(history, any(hit.lobes(), lobe_set::specular), i, paths);
                     });
         for (std::size_t kind = 0; kind < 4; ++kind) { into.flux2[kind] += square(into.flux[kind] - before[kind]); }
+    }
+
+    /// Light that lands counts for its share whether its own map wants it or not.
+    static void meet(const S& power, std::size_t kind, photon_history history, photon_block<S, T>& into) {
+        const double flux = static_cast<double>(max_component(power));
+        into.met[kind] += flux;
+        if (history == photon_history::reflected) { into.met[index(history)] += flux; }
     }
 
     /// Whether some map may still store what goes on from a surface that path `i` came to with `history`.
@@ -231,10 +271,10 @@ private:
         }
         map.wanted = wanted_[k];
         map.why = why_[k];
-        describe(map, wrong);
+        describe(map, kind, wrong);
     }
 
-    void describe(traced_map<S, T>& map, const std::string& wrong) const {
+    void describe(traced_map<S, T>& map, photon_history kind, const std::string& wrong) const {
         if (map.wanted == 0) { return; }
         const auto tell = [&](map_status status, std::string why) {
             map.status = status;
@@ -247,9 +287,16 @@ private:
         const double missing = static_cast<double>(map.wanted) - static_cast<double>(map.size());
         const double expected = static_cast<double>(map.wanted);
         if (missing > expected / 10 + 4 * std::sqrt(expected)) {
-            return tell(map_status::partly, "partly filled, all " + paths + " used up");
+            const bool spared = is_spared(index(kind)) && map.paths < options_.most_paths;
+            return tell(map_status::partly, "partly filled, " + (spared ? rarity(kind) : "all " + paths + " used up"));
         }
         tell(map_status::full, "full");
+    }
+
+    /// Why more photons of a kind were not sought.
+    [[nodiscard]] std::string rarity(photon_history kind) const {
+        const auto times = static_cast<std::size_t>(1 / share_[index(kind)]);
+        return "one part in " + std::to_string(times) + " of the light is not worth more paths";
     }
 
     const World& scene_;
@@ -258,6 +305,8 @@ private:
     const Run& run_;
     kinds wanted_{};
     kinds paths_{};
+    std::array<double, 4> met_{};              ///< by the pilot: power that landed, wanted or not
+    std::array<double, 4> share_{1, 1, 1, 1};  ///< see `share_of_light`
     std::array<std::string, 4> why_{};
     std::uint32_t most_bounces_;
     bool piloting_{false};
