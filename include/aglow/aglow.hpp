@@ -6,6 +6,7 @@
 #include <aglow/core/callback.hpp>
 #include <aglow/core/frame.hpp>
 #include <aglow/core/halton.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/core/log_gamma.hpp>
 #include <aglow/core/numbers.hpp>
 #include <aglow/core/octahedral.hpp>

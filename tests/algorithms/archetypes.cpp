@@ -3,7 +3,10 @@
 // the centre, the radiance is I r / (pi (1 - r)) everywhere: I / pi for r = 1/2.
 #include "support/archetypes.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <aglow/algorithms/cache_integrators.hpp>
@@ -11,6 +14,8 @@
 #include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/algorithms/pixel_probe.hpp>
+#include <aglow/algorithms/progressive.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
 
 #include "support/catch.hpp"
@@ -115,4 +120,58 @@ TEMPLATE_TEST_CASE("archetypes: a room without mirrors has no caustics anywhere"
     const auto seen = aglow::caustic_light(scene, light, eye, 16, 16, {.photons = 1000}, archetypes::executor{});
     REQUIRE(seen.size() == 16 * 16);
     for (const auto& level : seen) { CHECK(level == 0); }
+}
+
+namespace {
+
+using world = archetypes::scene<float>;
+using lamp = archetypes::lamp<float>;
+using seen = aglow::spectrum_of<world>;
+using camera = aglow::ray<float> (*)(const aglow::vec2<float>&);
+
+/// Whether a `Kept` can be made of a scene, lights and the rest, but not where either is a temporary.
+template <typename Kept, typename... Rest>
+constexpr bool outlives_nothing =
+    std::is_constructible_v<Kept, const world&, const lamp&, Rest...>&&
+        std::is_constructible_v<Kept, world&, lamp&, Rest...> &&
+    !std::is_constructible_v<Kept, world, lamp&, Rest...> &&
+    !std::is_constructible_v<Kept, const world, const lamp&, Rest...> &&
+    !std::is_constructible_v<Kept, const world&, lamp, Rest...> && !std::is_constructible_v<Kept, world, lamp, Rest...>;
+
+}  // namespace
+
+TEST_CASE("archetypes: what keeps a scene and lights takes no temporary ones") {
+    using box = aglow::bounds<float>;
+    CHECK(outlives_nothing<aglow::path_tracer<world, lamp>>);
+    CHECK(outlives_nothing<aglow::path_tracer<world, lamp>, aglow::path_options>);
+    CHECK(outlives_nothing<aglow::guided_path_tracer<world, lamp>, const aglow::path_guide<float>&>);
+    CHECK(outlives_nothing<aglow::photon_mapping<world, lamp>>);
+    CHECK(outlives_nothing<aglow::final_gathering<world, lamp>, aglow::final_gathering_options>);
+    CHECK(outlives_nothing<aglow::irradiance_caching<world, lamp>, box, camera>);
+    CHECK(outlives_nothing<aglow::gather_caching<world, lamp>, box, camera>);
+    CHECK(outlives_nothing<aglow::progressive_photon_mapping<world, lamp>>);
+    CHECK(outlives_nothing<aglow::photon_source<world, lamp>, const aglow::irradiance_points<seen, float>&>);
+    CHECK(outlives_nothing<aglow::direct_layer<world, lamp>>);
+    CHECK(outlives_nothing<aglow::layered_integrator<world, lamp, aglow::direct_layer<world, lamp>>,
+                           aglow::direct_layer<world, lamp>>);
+}
+
+TEST_CASE("archetypes: what keeps a guide, a map, a cache, a camera or an integrator takes no temporary one") {
+    using tracer = aglow::path_tracer<world, lamp>;
+    using guided = aglow::guided_path_tracer<world, lamp>;
+    CHECK_FALSE(std::is_constructible_v<guided, world&, lamp&, aglow::path_guide<float>>);
+    using maps = aglow::photon_maps<seen, float>;
+    using layer = aglow::map_layer<seen, float>;
+    CHECK(std::is_constructible_v<layer, decltype((std::declval<maps&>().caustic))>);
+    CHECK_FALSE(std::is_constructible_v<layer, decltype((std::declval<maps>().caustic))>);
+    CHECK(std::is_constructible_v<layer, const aglow::photon_map<seen, float>&>);
+    CHECK_FALSE(std::is_constructible_v<layer, aglow::photon_map<seen, float>>);
+    using cache = aglow::frozen_irradiance_cache<seen, float>;
+    using cached = aglow::cache_layer<cache, aglow::ray_reader<tracer>>;
+    CHECK(std::is_constructible_v<cached, const cache&, aglow::ray_reader<tracer>>);
+    CHECK_FALSE(std::is_constructible_v<cached, cache, aglow::ray_reader<tracer>>);
+    using probe = aglow::pixel_probe<camera, tracer>;
+    CHECK(std::is_constructible_v<probe, const camera&, const tracer&, std::size_t>);
+    CHECK_FALSE(std::is_constructible_v<probe, const camera&, tracer, std::size_t>);
+    CHECK_FALSE(std::is_constructible_v<probe, camera, const tracer&, std::size_t>);
 }

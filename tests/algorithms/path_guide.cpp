@@ -186,7 +186,8 @@ TEST_CASE("path_guide: a furnace with a mirror and a glass ball in it is 1 / (1 
                  {.centre = {0.4, -0.3, -0.4}, .radius = 0.35, .made_of = {.glass = 1.5}}};
     const path_guide guide{box, lamp};
     REQUIRE(guide.size() > 100);
-    const guided_path_tracer tracer{box, blind{}, guide};
+    const blind dark;
+    const guided_path_tracer tracer{box, dark, guide};
     sample_mean mean;
     for (std::uint64_t i = 0; i < 60'000; ++i) {
         const random_numbers<double> numbers{{.seed = 5, .path = i}};

@@ -87,7 +87,8 @@ TEST_CASE("path_trace: a box furnace of every lobe is 1 / (1 - rho) bright, and 
         const support::material<double> mixed{.diffuse = albedo * 0.5, .mirror = albedo * 0.5, .glow = 1};
         for (const auto& wall : {matte, mixed}) {
             const toy_scene<double, double> box{.rectangles = support::box_walls<double, double>(1, wall)};
-            const auto mean = all_around(path_tracer{box, blind{}}, 8000, vec3<double>{0.1, 0.2, -0.3});
+            const blind dark;
+            const auto mean = all_around(path_tracer{box, dark}, 8000, vec3<double>{0.1, 0.2, -0.3});
             CAPTURE(albedo, mean.mean(), mean.standard_error());
             CHECK(mean.agrees(1 / (1 - albedo), 4, 1e-6));
         }
@@ -158,9 +159,11 @@ TEST_CASE("path_trace: permuted bands give a permuted picture") {
 
 TEST_CASE("path_trace: a world without lights is exactly black") {
     const toy_scene<S, float> sphere{.balls = {{.radius = 2, .made_of = {.diffuse = S{0.9f}}}}};
-    const auto mean = all_around(path_tracer{sphere, support::no_light<S, float>{}}, 200, vec3<float>{});
+    const support::no_light<S, float> dark;
+    const auto mean = all_around(path_tracer{sphere, dark}, 200, vec3<float>{});
     CHECK(mean.mean() == 0);
-    const auto empty = all_around(path_tracer{toy_scene<S, float>{}, support::no_light<S, float>{}}, 10, vec3<float>{});
+    const toy_scene<S, float> nothing;
+    const auto empty = all_around(path_tracer{nothing, dark}, 10, vec3<float>{});
     CHECK(empty.mean() == 0);
 }
 

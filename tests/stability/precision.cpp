@@ -357,7 +357,8 @@ TEST_CASE("stability 79: absorption along the way is exp(-s d) from 1e-12 to 1e4
         CAPTURE(d, mean.mean());
         CHECK(std::abs(mean.mean() - std::exp(-d)) <= 8 * 2.3e-16);
     }
-    CHECK(looks_along(path_tracer{haze{1, 1e4}, sky}, ray<double>{{0, 0, 0}, {0, 0, 1}}, 1).mean() == 0);
+    const haze thick{1, 1e4};
+    CHECK(looks_along(path_tracer{thick, sky}, ray<double>{{0, 0, 0}, {0, 0, 1}}, 1).mean() == 0);
 }
 
 TEST_CASE("stability 80: through a wall a hundredth as thin as its radius a photon map leaks, less the less it looks") {

@@ -16,6 +16,7 @@
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/preparation.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/estimators/irradiance_cache.hpp>
 
 namespace aglow {
@@ -108,15 +109,16 @@ public:
     /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut each phase short: where the
     /// picture finds no record, it gathers afresh.
     template <typename Eye, Executor Run = in_sequence>
-    irradiance_caching(const World& scene, const Lights& lights, const bounds<scalar>& scene_bounds, const Eye& eye,
+    irradiance_caching(lasting<World> scene, lasting<Lights> lights, const bounds<scalar>& scene_bounds, const Eye& eye,
                        const caching_options& options = {}, const Run& run = {},
                        const preparation_progress& progress = {})
-        : scene_{scene}, lights_{lights}, options_{options}, source_{scene, lights, options.paths} {
+        : scene_{*scene}, lights_{*lights}, options_{options}, source_{scene_, lights_, options.paths} {
         if constexpr (has_maps) {
             detail::preparation_report report{progress};
-            maps_ = detail::trace_photons(scene, lights, detail::with_reflected(options.caustics.photons), run, report);
+            maps_ =
+                detail::trace_photons(scene_, lights_, detail::with_reflected(options.caustics.photons), run, report);
         }
-        shared_ = detail::cache_for(scene, scene_bounds, eye, reader(), options, run, progress, cache_, filled_);
+        shared_ = detail::cache_for(scene_, scene_bounds, eye, reader(), options, run, progress, cache_, filled_);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
@@ -169,8 +171,13 @@ private:
     shared_error shared_{};
 };
 
-template <Scene World, Illuminator Lights, std::floating_point T, typename Eye, Executor Run = in_sequence>
-irradiance_caching(const World&, const Lights&, const bounds<T>&, const Eye&, const glossy_caching_options&,
+template <Scene World, Illuminator Lights, typename Eye, Executor Run = in_sequence>
+irradiance_caching(const World&, const Lights&, const bounds<scalar_of<World>>&, const Eye&,
+                   const caching_options& = {}, const Run& = {}, const preparation_progress& = {})
+    -> irradiance_caching<World, Lights>;
+template <Scene World, Illuminator Lights, typename Eye, std::same_as<glossy_caching_options> Options,
+          Executor Run = in_sequence>
+irradiance_caching(const World&, const Lights&, const bounds<scalar_of<World>>&, const Eye&, const Options&,
                    const Run& = {}, const preparation_progress& = {})
     -> irradiance_caching<World, Lights, record_features{.incident = true}>;
 
@@ -198,12 +205,16 @@ public:
 
     /// `scene_bounds` is what the cache's lengths are measured by. `progress` may cut each phase short.
     template <typename Eye, Executor Run = in_sequence>
-    gather_caching(const World& scene, const Lights& lights, const bounds<scalar>& scene_bounds, const Eye& eye,
+    gather_caching(lasting<World> scene, lasting<Lights> lights, const bounds<scalar>& scene_bounds, const Eye& eye,
                    const gather_caching_options& options = {}, const Run& run = {},
                    const preparation_progress& progress = {})
-        : scene_{scene}, lights_{lights}, options_{options}, base_{scene, lights,  options.photons, options.irradiance,
-                                                                   run,   progress} {
-        shared_ = base_.points().shared() + detail::cache_for(scene, scene_bounds, eye, reader(), options.caching, run,
+        : scene_{*scene}, lights_{*lights}, options_{options}, base_{scene_,
+                                                                     lights_,
+                                                                     options.photons,
+                                                                     options.irradiance,
+                                                                     run,
+                                                                     progress} {
+        shared_ = base_.points().shared() + detail::cache_for(scene_, scene_bounds, eye, reader(), options.caching, run,
                                                               progress, cache_, filled_);
     }
 
@@ -239,5 +250,10 @@ private:
     fill_result filled_{};
     shared_error shared_{};
 };
+
+template <Scene World, Illuminator Lights, typename Eye, Executor Run = in_sequence>
+gather_caching(const World&, const Lights&, const bounds<scalar_of<World>>&, const Eye&,
+               const gather_caching_options& = {}, const Run& = {}, const preparation_progress& = {})
+    -> gather_caching<World, Lights>;
 
 }  // namespace aglow

@@ -10,6 +10,7 @@
 #include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/estimators/photon_map.hpp>
 
 namespace aglow {
@@ -50,9 +51,9 @@ template <typename Cache, typename Reader>
 class cache_layer {
 public:
     /// `shared`: what all that `reader` brings is off by together.
-    cache_layer(const Cache& cache, Reader reader, const shared_error& shared = {},
+    cache_layer(lasting<Cache> cache, Reader reader, const shared_error& shared = {},
                 const hemisphere_shape& fallback = {2, 8})
-        : cache_{cache}, reader_{reader}, shared_{shared}, fallback_{fallback} {}
+        : cache_{*cache}, reader_{reader}, shared_{shared}, fallback_{fallback} {}
 
     template <Surface H, Numbers N>
     [[nodiscard]] estimate<surface_spectrum<H>> operator()(const H& hit, const vec3<hit_scalar<H>>& wo,
@@ -77,5 +78,9 @@ private:
     shared_error shared_;
     hemisphere_shape fallback_;
 };
+
+template <typename Cache, typename Reader>
+cache_layer(const Cache&, Reader, const shared_error& = {}, const hemisphere_shape& = {2, 8})
+    -> cache_layer<Cache, Reader>;
 
 }  // namespace aglow

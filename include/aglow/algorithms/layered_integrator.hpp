@@ -7,6 +7,7 @@
 
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/lasting.hpp>
 
 namespace aglow {
 
@@ -19,8 +20,8 @@ public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
 
-    layered_integrator(const World& scene, const Lights& lights, Layers layers, const path_options& options = {})
-        : scene_{scene}, lights_{lights}, layers_{std::move(layers)}, options_{options} {}
+    layered_integrator(lasting<World> scene, lasting<Lights> lights, Layers layers, const path_options& options = {})
+        : scene_{*scene}, lights_{*lights}, layers_{std::move(layers)}, options_{options} {}
 
     /// Radiance that comes back along `eye`, W/(m² sr), and the layers' guess of its error.
     template <Numbers N>
@@ -47,5 +48,9 @@ private:
     Layers layers_;
     path_options options_;
 };
+
+template <Scene World, Illuminator Lights, typename Layers>
+layered_integrator(const World&, const Lights&, Layers, const path_options& = {})
+    -> layered_integrator<World, Lights, Layers>;
 
 }  // namespace aglow

@@ -8,6 +8,7 @@
 
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/photon_options.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/estimators/estimate.hpp>
 #include <aglow/estimators/photon_map.hpp>
 
@@ -48,9 +49,11 @@ class map_layer {
 public:
     explicit map_layer(const photon_map<S, T, Item>& map, const density_options& options = {})
         : map_{map}, options_{options} {}
+    explicit map_layer(const photon_map<S, T, Item>&&, const density_options& = {}) = delete;
     /// A map that knows how sure its flux is.
     explicit map_layer(const traced_map<S, T>& map, const density_options& options = {})
         : map_{map}, options_{options}, shared_{.common = map.common} {}
+    explicit map_layer(const traced_map<S, T>&&, const density_options& = {}) = delete;
 
     template <Surface H, typename N>
     [[nodiscard]] estimate<S> operator()(const H& hit, const vec3<T>& wo, T, const N&, std::uint32_t) const {
@@ -74,9 +77,9 @@ private:
 template <Scene World, Illuminator Lights>
 class direct_layer {
 public:
-    direct_layer(const World& scene, const Lights& lights, lobe_set lit = lobe_set::smooth,
+    direct_layer(lasting<World> scene, lasting<Lights> lights, lobe_set lit = lobe_set::smooth,
                  host_faults* faults = nullptr, lobe_set unscattered = lobe_set::none)
-        : scene_{scene}, lights_{lights}, lit_{lit}, faults_{faults}, unscattered_{lobe_set::diffuse | unscattered} {}
+        : scene_{*scene}, lights_{*lights}, lit_{lit}, faults_{faults}, unscattered_{lobe_set::diffuse | unscattered} {}
 
     template <typename N>
     [[nodiscard]] estimate<spectrum_of<World>> operator()(const hit_of<World>& hit, const vec3<scalar_of<World>>& wo,
@@ -97,6 +100,10 @@ private:
     host_faults* faults_;
     lobe_set unscattered_;  ///< lobes that no ray will look for lights from
 };
+
+template <Scene World, Illuminator Lights>
+direct_layer(const World&, const Lights&, lobe_set = lobe_set::smooth, host_faults* = nullptr,
+             lobe_set = lobe_set::none) -> direct_layer<World, Lights>;
 
 /// Several layers, added up.
 template <typename... Layers>

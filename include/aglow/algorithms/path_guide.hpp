@@ -17,6 +17,7 @@
 #include <aglow/algorithms/path_walk.hpp>
 #include <aglow/algorithms/plan.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/core/parallel.hpp>
 
 namespace aglow {
@@ -213,9 +214,9 @@ public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
 
-    guided_path_tracer(const World& scene, const Lights& lights, const path_guide<scalar>& guide,
+    guided_path_tracer(lasting<World> scene, lasting<Lights> lights, lasting<path_guide<scalar>> guide,
                        const path_options& options = {})
-        : scene_{scene}, lights_{lights}, guide_{guide}, options_{options} {}
+        : scene_{*scene}, lights_{*lights}, guide_{*guide}, options_{options} {}
 
     /// Radiance that comes back along `eye`, W/(m² sr); unbiased, so its own error guess is 0.
     template <Numbers N>
@@ -240,5 +241,9 @@ private:
     const path_guide<scalar>& guide_;
     path_options options_;
 };
+
+template <Scene World, Illuminator Lights>
+guided_path_tracer(const World&, const Lights&, const path_guide<scalar_of<World>>&, const path_options& = {})
+    -> guided_path_tracer<World, Lights>;
 
 }  // namespace aglow

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/lasting.hpp>
 
 namespace aglow {
 
@@ -14,8 +15,8 @@ public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
 
-    path_tracer(const World& scene, const Lights& lights, const path_options& options = {})
-        : scene_{scene}, lights_{lights}, options_{options} {}
+    path_tracer(lasting<World> scene, lasting<Lights> lights, const path_options& options = {})
+        : scene_{*scene}, lights_{*lights}, options_{options} {}
 
     /// Radiance that comes back along `eye`, W/(m² sr); unbiased, so its own error guess is 0.
     template <Numbers N>
@@ -44,6 +45,9 @@ private:
     const Lights& lights_;
     path_options options_;
 };
+
+template <Scene World, Illuminator Lights>
+path_tracer(const World&, const Lights&, const path_options& = {}) -> path_tracer<World, Lights>;
 
 /// Radiance along one ray by path tracing, for a host that wants no object.
 template <Scene World, Illuminator Lights, Numbers N>

@@ -12,6 +12,7 @@
 #include <aglow/algorithms/precompute_irradiance.hpp>
 #include <aglow/algorithms/preparation.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
+#include <aglow/core/lasting.hpp>
 
 namespace aglow {
 
@@ -54,11 +55,11 @@ public:
 
     /// `progress` may cut the photons short.
     template <Executor Run = in_sequence>
-    photon_mapping(const World& scene, const Lights& lights, const photon_mapping_options& options = {},
+    photon_mapping(lasting<World> scene, lasting<Lights> lights, const photon_mapping_options& options = {},
                    const Run& run = {}, const preparation_progress& progress = {})
-        : scene_{scene}, lights_{lights}, options_{options} {
+        : scene_{*scene}, lights_{*lights}, options_{options} {
         detail::preparation_report report{progress};
-        maps_ = detail::trace_photons(scene, lights, options.photons, run, report);
+        maps_ = detail::trace_photons(scene_, lights_, options.photons, run, report);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
@@ -90,6 +91,10 @@ private:
     photon_maps<spectrum, scalar> maps_;
 };
 
+template <Scene World, Illuminator Lights, Executor Run = in_sequence>
+photon_mapping(const World&, const Lights&, const photon_mapping_options& = {}, const Run& = {},
+               const preparation_progress& = {}) -> photon_mapping<World, Lights>;
+
 /// What a final-gathered picture is made of.
 struct final_gathering_options {
     photon_options photons{
@@ -119,8 +124,7 @@ template <Spectrum S, std::floating_point T>
 
 }  // namespace detail
 
-/// Photon maps and the irradiance that gather rays read: what every gathering integrator stands on. Keeps references to
-/// scene and lights.
+/// Photon maps and the irradiance that gather rays read: what every gathering integrator stands on.
 template <Scene World, Illuminator Lights>
     requires Emitter<Lights>
 class gather_base {
@@ -160,10 +164,14 @@ public:
 
     /// `progress` may cut the photons and their irradiance short.
     template <Executor Run = in_sequence>
-    final_gathering(const World& scene, const Lights& lights, const final_gathering_options& options = {},
+    final_gathering(lasting<World> scene, lasting<Lights> lights, const final_gathering_options& options = {},
                     const Run& run = {}, const preparation_progress& progress = {})
-        : scene_{scene}, lights_{lights}, options_{options}, base_{scene, lights,  options.photons, options.irradiance,
-                                                                   run,   progress} {}
+        : scene_{*scene}, lights_{*lights}, options_{options}, base_{scene_,
+                                                                     lights_,
+                                                                     options.photons,
+                                                                     options.irradiance,
+                                                                     run,
+                                                                     progress} {}
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
@@ -184,5 +192,9 @@ private:
     final_gathering_options options_;
     gather_base<World, Lights> base_;
 };
+
+template <Scene World, Illuminator Lights, Executor Run = in_sequence>
+final_gathering(const World&, const Lights&, const final_gathering_options& = {}, const Run& = {},
+                const preparation_progress& = {}) -> final_gathering<World, Lights>;
 
 }  // namespace aglow

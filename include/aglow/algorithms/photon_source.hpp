@@ -8,6 +8,7 @@
 
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
 
 namespace aglow {
@@ -29,9 +30,9 @@ public:
     /// What gathering into it can meet.
     static constexpr lobe_set possible_lobes = static_lobes<World>;
 
-    photon_source(const World& scene, const Lights& lights, const irradiance_points<S, T>& points,
+    photon_source(lasting<World> scene, lasting<Lights> lights, lasting<irradiance_points<S, T>> points,
                   const photon_source_options& options = {})
-        : scene_{scene}, lights_{lights}, points_{points}, options_{options} {}
+        : scene_{*scene}, lights_{*lights}, points_{*points}, options_{options} {}
 
     /// Light that comes along `gather`; emission that the asker finds by himself is left to him.
     template <Numbers N>
@@ -67,5 +68,9 @@ private:
     const irradiance_points<S, T>& points_;
     photon_source_options options_;
 };
+
+template <Scene World, Illuminator Lights>
+photon_source(const World&, const Lights&, const irradiance_points<spectrum_of<World>, scalar_of<World>>&,
+              const photon_source_options& = {}) -> photon_source<World, Lights>;
 
 }  // namespace aglow

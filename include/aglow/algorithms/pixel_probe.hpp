@@ -7,6 +7,7 @@
 
 #include <aglow/algorithms/host_faults.hpp>
 #include <aglow/concepts/light.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/core/sobol.hpp>
 
 namespace aglow {
@@ -26,8 +27,8 @@ public:
         i.faults();
     };
 
-    pixel_probe(const Eye& eye, const Integrator& integrator, std::size_t width)
-        : eye_{eye}, integrator_{integrator}, width_{width} {}
+    pixel_probe(lasting<Eye> eye, lasting<Integrator> integrator, std::size_t width)
+        : eye_{*eye}, integrator_{*integrator}, width_{width} {}
 
     /// Mean of `count` stratified samples of pixel number `pixel`, row by row from the top. Samples of different seeds
     /// are independent.
@@ -63,5 +64,8 @@ private:
     std::size_t width_;
     std::shared_ptr<host_faults> faults_{std::make_shared<host_faults>()};
 };
+
+template <typename Eye, typename Integrator>
+pixel_probe(const Eye&, const Integrator&, std::size_t) -> pixel_probe<Eye, Integrator>;
 
 }  // namespace aglow

@@ -14,6 +14,7 @@
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/core/log_gamma.hpp>
 
 namespace aglow {
@@ -41,11 +42,10 @@ class progressive_photon_mapping {
 
 public:
     /// Throws `std::invalid_argument` for an alpha outside (0, 1).
-    progressive_photon_mapping(const World& scene, const Lights& lights, const progressive_options& options = {})
-        : scene_{scene}, lights_{lights}, options_{options} {
+    progressive_photon_mapping(lasting<World> scene, lasting<Lights> lights, const progressive_options& options = {})
+        : scene_{*scene}, lights_{*lights}, options_{options} {
         if (!(options.alpha > 0 && options.alpha < 1)) {
-            throw std::invalid_argument("progressive_options.alpha must lie in (0, 1): " +
-                                        std::to_string(options.alpha));
+            throw std::invalid_argument("progressive_options.alpha must lie in (0, 1): " + std::to_string(options.alpha));
         }
     }
 
@@ -78,5 +78,9 @@ private:
     photon_paths paths_{};
     std::uint64_t passes_{0};
 };
+
+template <Scene World, Illuminator Lights>
+progressive_photon_mapping(const World&, const Lights&, const progressive_options& = {})
+    -> progressive_photon_mapping<World, Lights>;
 
 }  // namespace aglow
