@@ -17,6 +17,7 @@
 #include <aglow/core/ray.hpp>
 #include <aglow/core/roulette.hpp>
 #include <aglow/core/shared_exponent.hpp>
+#include <aglow/core/significant.hpp>
 #include <aglow/core/simd.hpp>
 #include <aglow/core/simd_avx2.hpp>
 #include <aglow/core/simd_avx512.hpp>

@@ -16,6 +16,7 @@
 #include <aglow/algorithms/trace_photons.hpp>
 #include <aglow/core/lasting.hpp>
 #include <aglow/core/log_gamma.hpp>
+#include <aglow/core/significant.hpp>
 
 namespace aglow {
 
@@ -45,7 +46,7 @@ public:
     progressive_photon_mapping(lasting<World> scene, lasting<Lights> lights, const progressive_options& options = {})
         : scene_{*scene}, lights_{*lights}, options_{options} {
         if (!(options.alpha > 0 && options.alpha < 1)) {
-            throw std::invalid_argument("progressive_options.alpha must lie in (0, 1): " + std::to_string(options.alpha));
+            throw std::invalid_argument("progressive_options.alpha must lie in (0, 1): " + significant(options.alpha));
         }
     }
 

@@ -18,6 +18,7 @@
 #include <aglow/algorithms/path_walk.hpp>
 #include <aglow/algorithms/photon_walk.hpp>
 #include <aglow/core/bounds.hpp>
+#include <aglow/core/significant.hpp>
 
 namespace aglow {
 
@@ -130,22 +131,22 @@ template <std::floating_point T>
 /// Puts into words what is to be feared.
 inline void warn(stiffness& s, const path_options& paths, double wanted) {
     if (!s.dissipative()) {
-        s.warnings.push_back("not dissipative: one bounce leaves " + std::to_string(s.dominant) +
+        s.warnings.push_back("not dissipative: one bounce leaves " + significant(s.dominant) +
                              " of the light, so no number of bounces is enough");
     }
     if (s.lost_at_cap > wanted) {
         s.warnings.push_back("a cap of " + std::to_string(paths.most_bounces) + " bounces loses " +
-                             std::to_string(100 * s.lost_at_cap) + " % of the light; " + std::to_string(s.bounces) +
+                             significant(100 * s.lost_at_cap, 3) + " % of the light; " + std::to_string(s.bounces) +
                              " bounces are needed");
     }
     if (s.bounces > endless_bounces) {
         s.warnings.push_back("photon paths longer than " + std::to_string(endless_bounces) +
                              " surfaces may be cut, which loses " +
-                             std::to_string(100 * s.lost_after(endless_bounces)) + " % of the light");
+                             significant(100 * s.lost_after(endless_bounces), 3) + " % of the light");
     }
     if (s.dominant > 0 && s.second > (1 - wanted) * s.dominant - s.resolution) {
         s.warnings.push_back("parts of the scene hardly exchange light: the second eigenvalue is " +
-                             std::to_string(s.second) + " beside " + std::to_string(s.dominant));
+                             significant(s.second) + " beside " + significant(s.dominant));
     }
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <aglow/core/numbers.hpp>
+#include <aglow/core/significant.hpp>
 #include <aglow/estimators/record_reach.hpp>
 #include <aglow/estimators/record_view.hpp>
 
@@ -29,7 +30,7 @@ namespace detail {
 
 /// Throws `std::invalid_argument` that names the setting and its value.
 inline void expect_setting(bool good, const char* name, double value) {
-    if (!good) { throw std::invalid_argument("aglow: " + std::string{name} + " is " + std::to_string(value)); }
+    if (!good) { throw std::invalid_argument("aglow: " + std::string{name} + " is " + significant(value)); }
 }
 
 inline void check(const irradiance_cache_options& o) {

@@ -1,11 +1,11 @@
 // An audit's result in words, for people who decide on it.
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string>
 
+#include <aglow/core/significant.hpp>
 #include <aglow/report/audit_result.hpp>
 
 namespace aglow {
@@ -14,9 +14,7 @@ namespace aglow {
 [[nodiscard]] inline std::string percent(double share) {
     if (!is_finite(share)) { return "unknown"; }
     if (share == 0) { return "0 %"; }
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, 100 * share, std::chars_format::general, 3).ptr;
-    return std::string(digits, end) + " %";
+    return significant(100 * share, 3) + " %";
 }
 
 [[nodiscard]] inline const char* words(audit_status status) {
