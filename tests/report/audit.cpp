@@ -35,6 +35,11 @@ int count(int rounds, const field& f, const P& probe, audit_options options, aud
     return found;
 }
 
+/// Whether one of the reasons begins with `words`.
+bool says(const audit_result& a, const char* words) {
+    return std::any_of(a.reasons.begin(), a.reasons.end(), [&](const auto& r) { return r.find(words) == 0; });
+}
+
 }  // namespace
 
 TEST_CASE("audit: every statement holds as often as it says, on six kinds of damage") {
@@ -168,9 +173,36 @@ TEST_CASE("audit: noise of infinite variance and noise of rare spikes never pass
     };
     CHECK(count(20, f, power_law, {.budget = 200'000}, audit_status::inconclusive) == 20);
     CHECK(count(20, f, spikes, {.budget = 200'000}, audit_status::certified) == 0);
-    const audit_result a = audit(f.image(), power_law, {.budget = 200'000});
+    const audit_result a = audit(f.image(), power_law, {.target = 0.2, .patience = 4});
     CHECK(a.tail_index > 0.6);
     CHECK(a.reasons.front().find("heavy tails") == 0);
+}
+
+TEST_CASE(
+    "audit: a budget that is too small is blamed before the probes, and the budget that is called for is enough") {
+    const field f{damage::none};
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const audit_options few{.target = 0.02, .budget = 10'000, .seed = seed};
+        const audit_result a = audit(f.image(), f.probe(), few);
+        CHECK(a.status == audit_status::inconclusive);
+        REQUIRE_FALSE(a.reasons.empty());
+        CHECK(a.reasons.front().find("the budget of samples is too small") == 0);
+        // By algebra: relative variance 1 over half the target squared, for each of 400 probes, and an eighth more;
+        // a tenth of the pixels are dark and call for none.
+        const double called_for = static_cast<double>(a.samples_called_for) / (400 * 1.125 / square(0.01));
+        CHECK((called_for > 0.4 && called_for < 1.2));
+        audit_options enough = few;
+        enough.budget = 2 * a.samples_called_for;
+        const audit_result again = audit(f.image(), f.probe(), enough);
+        CHECK(again.status == audit_status::certified);
+        CHECK(again.reasons.empty());
+        CHECK(again.samples_called_for == 0);
+    }
+    // What more samples would not mend is not blamed on them.
+    field bright{damage::too_bright};
+    const audit_result wrong = audit(bright.image(), bright.probe(), {.target = 0.01, .budget = 1'000'000});
+    CHECK(wrong.status == audit_status::not_certified);
+    CHECK_FALSE(says(wrong, "the budget"));
 }
 
 TEST_CASE("audit: a bound on samples tells rare bright ones from an infinite variance, and widens what is said") {
@@ -182,7 +214,8 @@ TEST_CASE("audit: a bound on samples tells rare bright ones from an infinite var
     };
     const audit_options impatient{.target = 0.3, .budget = 200'000, .patience = 1};
     CHECK(count(10, f, spikes, impatient, audit_status::inconclusive) == 10);
-    CHECK(audit(f.image(), spikes, impatient).reasons.front().find("heavy tails") == 0);
+    const audit_result doubted = audit(f.image(), spikes, impatient);
+    CHECK(says(doubted, "heavy tails"));
     audit_options bounded = impatient;
     bounded.sample_bound = 200.5;
     const audit_result a = audit(f.image(), spikes, bounded);

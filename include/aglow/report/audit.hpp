@@ -66,6 +66,16 @@ inline void find_doubts(audit_result& result, bool heavy_tailed) {
                "heavy tails: a single probe makes up more than a fifth of the error");
 }
 
+/// What seems heavy-tailed, or too wide a bound, may only be few samples: where more of them help, that comes first.
+inline void blame_budget(audit_result& result) {
+    if (result.status != audit_status::inconclusive || result.samples_called_for == 0 || has_broken_probes(result)) {
+        return;
+    }
+    result.reasons.insert(result.reasons.begin(),
+                          "the budget of samples is too small: the probes' noise calls for about " +
+                              std::to_string(result.samples_called_for));
+}
+
 inline void judge(audit_result& result, const audit_options& options, bool heavy_tailed) {
     find_doubts(result, heavy_tailed);
     const bool doubtful = !result.reasons.empty();
@@ -83,6 +93,7 @@ inline void judge(audit_result& result, const audit_options& options, bool heavy
                     : large || biased  ? audit_status::not_certified
                     : small && neutral ? audit_status::certified
                                        : audit_status::inconclusive;
+    blame_budget(result);
 }
 
 template <std::floating_point T>
@@ -111,8 +122,10 @@ void state(audit_result& result, const audit_sample<T>& sample, const audit_opti
     const double t = student_t_quantile(options.confidence, static_cast<double>(all.count() - 1));
     result.mean_error_floor = all.mean() - t * all.standard_error();
     // Noise beyond what was planned is still in `mean_error`: at most 3 − 2.8·√2 + 0.8·2 of its size (see
-    // `less_noisy`).
-    if (own > 1.5 * options.noise * options.target) { result.mean_error_floor -= 0.65 * own; }
+    // `less_noisy`), and as much as that of the denominators can add.
+    if (own > 1.5 * options.noise * options.target) {
+        result.mean_error_floor -= 0.65 * own + mean_of(sample.denominator_noises()).mean();
+    }
     // Where rare samples were not met, what looks like the picture's error may be all theirs.
     result.mean_error_floor = bounded ? result.mean_error_floor - result.unmet_error : 0;
     result.clipped_error_bound = betting_upper_bound(clipped(plain), options.confidence);
@@ -134,6 +147,7 @@ template <std::floating_point T>
     result.probes = sample.probes();
     result.samples_per_probe = sample.samples_per_probe();
     result.samples = sample.samples();
+    result.samples_called_for = sample.called_for();
     result.broken_samples = sample.broken();
     result.lost_share = sample.lost_share();
     state(result, sample, options);

@@ -58,6 +58,7 @@ public:
                 wanted_batch(all(probe, run, uniform_pixels(pilot_probes, round), batches, round), batch);
             const double most = affordable_batch();
             const double next = std::clamp(std::ceil(std::min(wanted, most)), 1.0, 1e9);
+            wanted_ = wanted;
             if (wanted <= 8 * static_cast<double>(batch) || next < wanted) {
                 per_batch_ = static_cast<std::size_t>(next);
                 return;
@@ -68,9 +69,16 @@ public:
 
     /// Whether patience and budget reach for four times the samples.
     [[nodiscard]] bool may_quadruple() const {
-        const double most = options_.patience / square(options_.noise * options_.target);
-        const double more = 4 * static_cast<double>(per_batch_);
-        return more * probe_batches <= most && more <= affordable_batch();
+        return is_patient() && 4 * static_cast<double>(per_batch_) <= affordable_batch();
+    }
+
+    /// About how many samples all probes call for, by their noise or because it seems `heavy` still; 0 where they got
+    /// them, or patience ended before the budget.
+    [[nodiscard]] std::size_t called_for(bool heavy) const {
+        const double got = static_cast<double>(per_batch_);
+        const double need = std::max(std::ceil(wanted_), heavy && is_patient() ? 4 * got : 0.0);
+        if (!(need > got)) { return 0; }
+        return static_cast<std::size_t>(std::min(1e18, need * sample_cost()));
     }
 
     void quadruple() { per_batch_ *= 4; }
@@ -192,10 +200,19 @@ private:
         return static_cast<double>(batch) / probe_batches * square(spread.mean() / (options_.noise * options_.target));
     }
 
-    /// What the budget allows, the look that shares it out included.
+    /// Whether patience reaches for four times the samples.
+    [[nodiscard]] bool is_patient() const {
+        const double most = options_.patience / square(options_.noise * options_.target);
+        return 4 * static_cast<double>(per_batch_) * probe_batches <= most;
+    }
+
+    /// Samples of all probes for one in a batch, those of the look that shares them out included.
+    [[nodiscard]] double sample_cost() const { return 1.125 * static_cast<double>(options_.probes * probe_batches); }
+
+    /// What the budget allows.
     [[nodiscard]] double affordable_batch() const {
         const double left = static_cast<double>(options_.budget) - static_cast<double>(samples_);
-        return std::floor(left / (1.125 * static_cast<double>(options_.probes * probe_batches)));
+        return std::floor(left / sample_cost());
     }
 
     audited_picture<T> picture_;
@@ -204,6 +221,7 @@ private:
     const pixel_shares& shares_;
     std::size_t uniform_;
     std::size_t per_batch_{1};
+    double wanted_{0};  ///< samples per batch, by the pilot
     std::size_t samples_{0};
     std::size_t broken_{0};
     double lost_{0};

@@ -79,7 +79,8 @@ struct audit_options {
 enum class audit_status { certified, not_certified, inconclusive };
 
 /// The statements of an audit. `certified`: the bound on the mean relative error (and the bias, if asked) is within its
-/// target. `not_certified`: it is not, or pixels are broken. `inconclusive`: the probes cannot tell; `reasons` say why.
+/// target. `not_certified`: it is not, or pixels are broken. `inconclusive`: the probes cannot tell; `reasons` say why,
+/// first what can be helped.
 struct audit_result {
     audit_status status{audit_status::inconclusive};
     std::vector<std::string> reasons{};
@@ -106,7 +107,8 @@ struct audit_result {
     double lost_share{0};  ///< of the probes' light, by broken answers of their host (see `KnowsLoss`)
     std::size_t probes{0};
     std::size_t samples_per_probe{0};
-    std::size_t samples{0};  ///< all samples spent, the pilot's included
+    std::size_t samples{0};             ///< all samples spent, the pilot's included
+    std::size_t samples_called_for{0};  ///< about how many it takes, where the budget did not allow them; else 0
     std::vector<unseen_transport> unseen{};
 };
 

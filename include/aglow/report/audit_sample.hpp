@@ -41,6 +41,7 @@ public:
             records_ = draw.main(probe, run, pixels, batches, audit_part::anew + again);
         }
         slow_ = seems_heavy();
+        called_for_ = draw.called_for(heavy_tailed());
         const std::vector<std::size_t> rare = draw.pixels_of_rare_classes();
         extra_ = draw.all(probe, run, rare, draw.allotted(probe, run, rare, audit_part::extra_spread),
                           audit_part::extra_probes);
@@ -91,6 +92,8 @@ public:
     [[nodiscard]] std::size_t samples_per_probe() const { return per_batch_ * probe_batches; }
     [[nodiscard]] std::size_t samples() const { return samples_; }
     [[nodiscard]] std::size_t broken() const { return broken_; }
+    /// About how many samples would have been needed, where the budget did not allow them; else 0.
+    [[nodiscard]] std::size_t called_for() const { return called_for_; }
     /// Share of the light that broken answers of the probes' host cost.
     [[nodiscard]] double lost_share() const { return samples_ > 0 ? lost_ / static_cast<double>(samples_) : 0; }
 
@@ -132,6 +135,11 @@ public:
     /// Weighted size of the noise of each probe, relative as its error is: half the distance of its halves.
     [[nodiscard]] std::vector<double> noises() const {
         return each([&](const probe_record& r) { return r.weight * of_.apart(r) / 2 / of_.scale(r); });
+    }
+
+    /// What is added to the error of each probe for the noise in its denominator.
+    [[nodiscard]] std::vector<double> denominator_noises() const {
+        return each([&](const probe_record& r) { return r.weight * of_.denominator_noise2(r); });
     }
 
     /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in: never too small on
@@ -260,6 +268,7 @@ private:
     bool slow_{false};
     std::size_t per_batch_{1};
     std::size_t samples_{0};
+    std::size_t called_for_{0};
     std::size_t broken_{0};
     double lost_{0};
     std::uint64_t further_draws_{0};
