@@ -10,6 +10,7 @@
 
 #include "case.hpp"
 #include "stop_rule.hpp"
+#include "whole_pictures.hpp"
 
 using namespace calibration;
 
@@ -172,7 +173,8 @@ void print(const known_scene& scene, const char* method, const tally& t) {
     std::fflush(stdout);
 }
 
-void print_trials(const known_scene& scene, const char* method, const stop_tally& t) {
+template <typename Known>
+void print_trials(const Known& scene, const char* method, const stop_tally& t) {
     const auto at = [](const std::vector<double>& v, double q) { return v.empty() ? 0.0 : aglow::quantile(v, q); };
     std::printf(
         "until %-16s %-17s certified %3zu (%zu falsely), out of reach %zu, out of work %zu of %zu; work over the "
@@ -199,13 +201,15 @@ void help(const effort& e) {
     std::printf(
         "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--pool=N] [--certificates=N] [--method=N]\n"
         "       [--target=X] [--noise=X] [--class-probes=N] [--budget=N] [--bounded] [--width=N]\n"
-        "       [--probes=guided|path] [--no-coverage] [--no-controls] [--no-trials]\n"
+        "       [--probes=guided|path] [--no-coverage] [--no-controls] [--no-trials] [--whole]\n"
         "Percentages of %zu certificates at nominal 95 %%: error bars by kind of pixel; statements on the energy, the\n"
         "mean relative error and its 95 %% quantile, and how far above the truth they are; false certificates, at a\n"
         "target just below the true error where none is told. Then pictures that are wrong on purpose, and pictures\n"
         "rendered until they are certified, beside an oracle that knows their error, with probes weighed against\n"
-        "pictures of --width. Probes are the renderer's, guided where light comes over mirrors, or all plain paths.\n",
-        e.certificates);
+        "pictures of --width. These are small ones too, or with --whole of that width: then their truth is known at\n"
+        "%zu pixels drawn at random. Probes are the renderer's, guided where light comes over mirrors, or all plain\n"
+        "paths.\n",
+        e.certificates, e.truths);
 }
 
 /// Whether `argument` was `name` and a number not below 0, which is put into `value`.
@@ -234,6 +238,8 @@ bool take(const std::string& argument, job& what) {
         what.trials = false;
     } else if (argument == "--probes=guided" || argument == "--probes=path") {
         e.probes = argument == "--probes=path" ? host::probe_kind::path : host::probe_kind::guided;
+    } else if (argument == "--whole") {
+        e.whole = true;
     } else if (argument == "--bounded") {
         e.bounded = true;
     } else if (take(argument, "--method", what.first)) {
@@ -247,14 +253,17 @@ bool take(const std::string& argument, job& what) {
     return true;
 }
 
+template <typename Known>
+void try_to_stop(const Known& scene, const job& what) {
+    for (std::size_t m = what.first; m < what.last; ++m) { print_trials(scene, methods[m], stop_trials(scene, m)); }
+}
+
 void work(const known_scene& scene, const job& what) {
     for (std::size_t m = what.first; m < what.last && what.coverage; ++m) {
         print(scene, methods[m], calibrate(scene, render(scene, m, 7)));
     }
     if (what.controls) { controls(scene); }
-    for (std::size_t m = what.first; m < what.last && what.trials; ++m) {
-        print_trials(scene, methods[m], stop_trials(scene, m));
-    }
+    if (what.trials && !what.how.whole) { try_to_stop(scene, what); }
 }
 
 }  // namespace
@@ -287,5 +296,9 @@ int main(int argc, char** argv) {
         }
     }
     if (what.coverage) { print_head(); }
-    for (const std::string& name : what.scenes) { work(known_scene{*host::scenes::find<float>(name), what.how}, what); }
+    for (const std::string& name : what.scenes) {
+        const auto scene = *host::scenes::find<float>(name);
+        if (what.coverage || what.controls || !what.how.whole) { work(known_scene{scene, what.how}, what); }
+        if (what.trials && what.how.whole) { try_to_stop(whole_scene{scene, what.how}, what); }
+    }
 }

@@ -33,8 +33,10 @@ using world_type = host::counted_scene<host::scene<float>>;
 struct effort {
     std::size_t pixels{64};     ///< width and height of the pictures
     std::uint32_t pool{16384};  ///< samples per pixel of the pool; a power of two, or the one below is taken
+    bool whole{false};          ///< whether pictures that are rendered until they are certified are as wide as `width`
+    std::size_t truths{8192};   ///< pixels of these whose truth is known, by so many samples each
     std::size_t certificates{200};
-    double target{0};  ///< that audits are asked for; 0: 3 % below the true error
+    double target{0};  ///< of audits and trials; 0: 3 % below the true error, and where an oracle needs 4 to 32 samples
     double noise{aglow::audit_options{}.noise};
     std::size_t class_probes{aglow::audit_options{}.class_probes};
     bool bounded{false};     ///< whether audits are told how large a sample can be
@@ -42,6 +44,8 @@ struct effort {
     std::size_t budget{0};   ///< samples of an audit; 0: an eighth of the pool for each of its probes
     host::probe_kind probes{host::probe_kind::guided};  ///< as the renderer's, or by plain paths
 };
+
+struct judged_picture;
 
 /// A scene, and a pool of unbiased samples of every pixel. What is true here is the mean of the pool and looks are
 /// drawn from it, so that the truth has no noise of its own; the pool must be much larger than any look.
@@ -113,21 +117,12 @@ public:
         return sum / static_cast<float>(count);
     }
 
+    /// The mean relative error of a picture, as audits define it.
+    [[nodiscard]] double mean_error(const judged_picture& picture) const;
+
     /// `look` as audits want it.
     [[nodiscard]] auto probe() const {
         return [this](std::size_t pixel, std::uint64_t seed, std::size_t count) { return look(pixel, seed, count); };
-    }
-
-    [[nodiscard]] static std::vector<float> values_of(const aglow::film<rgb>& film) {
-        std::vector<float> values;
-        values.reserve(3 * film.width() * film.height());
-        for (std::size_t y = 0; y < film.height(); ++y) {
-            for (std::size_t x = 0; x < film.width(); ++x) {
-                const rgb p = film.radiance(x, y);
-                values.insert(values.end(), {p.x, p.y, p.z});
-            }
-        }
-        return values;
     }
 
 private:
@@ -233,10 +228,22 @@ struct judged_picture {
     }
 };
 
+/// Values and guesses of a film, without classes: for claims on the whole picture.
+[[nodiscard]] inline judged_picture picture_of(const aglow::film<rgb>& film) {
+    judged_picture result{.pixels = film.width()};
+    for (std::size_t y = 0; y < film.height(); ++y) {
+        for (std::size_t x = 0; x < film.width(); ++x) {
+            const rgb p = film.radiance(x, y);
+            result.values.insert(result.values.end(), {p.x, p.y, p.z});
+            result.guess.push_back(film.error(x, y));
+        }
+    }
+    return result;
+}
+
 [[nodiscard]] inline judged_picture judge(const known_scene& scene, const aglow::film<rgb>& film) {
-    judged_picture result{.values = known_scene::values_of(film), .pixels = film.width()};
+    judged_picture result = picture_of(film);
     const std::size_t count = film.width() * film.height();
-    for (std::size_t i = 0; i < count; ++i) { result.guess.push_back(film.error(i % film.width(), i / film.width())); }
     std::vector<double> hardness(count);
     for (std::size_t i = 0; i < count; ++i) {
         hardness[i] = static_cast<double>(result.guess[i]) / std::max(1e-30, result.gray(i));
@@ -301,6 +308,10 @@ struct true_errors {
     return result;
 }
 
+inline double known_scene::mean_error(const judged_picture& picture) const {
+    return errors_of(*this, picture, aglow::audit_options{}.dark).mean_relative;
+}
+
 inline constexpr const char* methods[] = {"photon map", "final gather", "irradiance cache", "gather cache",
                                           "progressive"};
 
@@ -308,9 +319,9 @@ inline constexpr const char* methods[] = {"photon map", "final gather", "irradia
 enum class mistake { none, wide_radius, no_depth, lamp_missing, coarse_cache };
 
 /// Calls `use` with the integrator number `method`, all but the progressive one, of `world` with its maps.
-template <typename Use>
-void with_integrator(const known_scene& scene, const world_type& world, std::size_t method, std::uint64_t seed,
-                     mistake wrong, const Use& use) {
+template <typename Known, typename Use>
+void with_integrator(const Known& scene, const world_type& world, std::size_t method, std::uint64_t seed, mistake wrong,
+                     const Use& use) {
     const std::size_t n = scene.how().pixels;
     const auto& lights = world.lights();
     const aglow::own_threads run{};
@@ -340,9 +351,9 @@ inline constexpr std::size_t progressive = 4;
 inline constexpr aglow::progressive_options passes_of{.caustic = 10'000, .indirect = 20'000};
 
 /// Calls `use` with a callable that exposes a film with so many more samples, or passes of the progressive method.
-template <typename Use>
-void with_method(const known_scene& scene, const world_type& world, std::size_t method, std::uint64_t seed,
-                 mistake wrong, const Use& use) {
+template <typename Known, typename Use>
+void with_method(const Known& scene, const world_type& world, std::size_t method, std::uint64_t seed, mistake wrong,
+                 const Use& use) {
     const aglow::own_threads run{};
     if (method == progressive) {
         aglow::progressive_options options = passes_of;
@@ -375,7 +386,8 @@ void with_method(const known_scene& scene, const world_type& world, std::size_t 
 }
 
 /// Rays of one pixel in a pass of the progressive method: its own share of the photons', and those of its sample.
-[[nodiscard]] inline double pass_cost(const known_scene& scene) {
+template <typename Known>
+[[nodiscard]] double pass_cost(const Known& scene) {
     const auto& world = scene.scene();
     const auto rays = [] { return host::ray_count::all_nearest() + host::ray_count::all_shadow(); };
     const aglow::photon_options wanted{.caustic = passes_of.caustic, .indirect = passes_of.indirect, .seed = 11};
@@ -393,7 +405,8 @@ void with_method(const known_scene& scene, const world_type& world, std::size_t 
 }
 
 /// Rays that a sample of a pixel costs by method number `method`, lookups weighed as the renderer weighs them.
-[[nodiscard]] inline double picture_cost(const known_scene& scene, std::size_t method) {
+template <typename Known>
+[[nodiscard]] double picture_cost(const Known& scene, std::size_t method) {
     if (method == progressive) { return pass_cost(scene); }
     double cost = 0;
     with_integrator(scene, scene.scene(), method, 11, mistake::none, [&](const auto& integrator) {

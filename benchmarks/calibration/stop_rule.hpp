@@ -14,29 +14,20 @@
 
 namespace calibration {
 
-/// One picture at ever more samples a pixel (or passes), and its true error.
+/// One picture at ever more samples a pixel (or passes), up to `most`, and its true error. Rendered as it is asked for.
+template <typename Known, typename Expose>
 class growing_picture {
 public:
-    growing_picture(const known_scene& scene, std::size_t method, std::uint64_t seed, std::uint32_t most) {
-        aglow::film<rgb> film{scene.how().pixels, scene.how().pixels};
-        with_method(scene, scene.scene(), method, seed, mistake::none, [&](const auto& expose) {
-            while (film.samples() < most) {
-                const std::uint32_t next = std::max(film.samples() + 1, film.samples() + film.samples() / 16);
-                expose(film, std::min(most, next) - film.samples());
-                add(scene, film);
-            }
-        });
-    }
+    growing_picture(const Known& scene, const Expose& expose, std::uint32_t most)
+        : scene_{scene}, expose_{expose}, most_{most}, film_{scene.how().pixels, scene.how().pixels} {}
 
     /// The picture when at least `work` is done; the last one if none is.
-    [[nodiscard]] std::size_t at(double work) const {
-        const auto found = std::lower_bound(works_.begin(), works_.end(), work);
-        return std::min(works_.size() - 1, static_cast<std::size_t>(found - works_.begin()));
+    [[nodiscard]] std::size_t at(double work) {
+        return first([&](std::size_t i) { return works_[i] >= work; });
     }
     /// The first picture with an error of at most `error`; the last one if none has.
-    [[nodiscard]] std::size_t within(double error) const {
-        const auto found = std::find_if(errors_.begin(), errors_.end(), [&](double e) { return e <= error; });
-        return std::min(works_.size() - 1, static_cast<std::size_t>(found - errors_.begin()));
+    [[nodiscard]] std::size_t within(double error) {
+        return first([&](std::size_t i) { return errors_[i] <= error; });
     }
 
     [[nodiscard]] double work(std::size_t i) const { return works_[i]; }
@@ -44,16 +35,29 @@ public:
     [[nodiscard]] aglow::audited_picture<float> picture(std::size_t i) const { return pictures_[i].audited(); }
 
 private:
-    void add(const known_scene& scene, const aglow::film<rgb>& film) {
-        judged_picture now{.values = known_scene::values_of(film), .pixels = film.width()};
-        for (std::size_t i = 0; i < now.values.size() / 3; ++i) {
-            now.guess.push_back(film.error(i % film.width(), i / film.width()));
+    template <typename Test>
+    std::size_t first(const Test& test) {
+        for (std::size_t i = 0;; ++i) {
+            if (i == works_.size()) {
+                if (film_.samples() >= most_) { return i - 1; }
+                grow();
+            }
+            if (test(i)) { return i; }
         }
-        works_.push_back(film.samples());
-        errors_.push_back(errors_of(scene, now, aglow::audit_options{}.dark).mean_relative);
-        pictures_.push_back(std::move(now));
     }
 
+    void grow() {
+        const std::uint32_t next = std::max(film_.samples() + 1, film_.samples() + film_.samples() / 16);
+        expose_(film_, std::min(most_, next) - film_.samples());
+        works_.push_back(film_.samples());
+        pictures_.push_back(picture_of(film_));
+        errors_.push_back(scene_.mean_error(pictures_.back()));
+    }
+
+    const Known& scene_;
+    const Expose& expose_;
+    std::uint32_t most_;
+    aglow::film<rgb> film_;
     std::vector<double> works_{};
     std::vector<double> errors_{};
     std::vector<judged_picture> pictures_{};
@@ -66,7 +70,8 @@ struct probe_price {
     double guide{0};  ///< before the first
 };
 
-[[nodiscard]] inline probe_price price_of(const known_scene& scene, std::size_t method) {
+template <typename Known>
+[[nodiscard]] probe_price price_of(const Known& scene, std::size_t method) {
     const double all = picture_cost(scene, method) * aglow::square(static_cast<double>(scene.how().width));
     return {scene.probe_cost() / all, scene.guide_cost() / all};
 }
@@ -84,8 +89,8 @@ struct stop_tally {
 };
 
 /// One trial: the target is the error of the picture when the oracle's work is done, and the rule may do 8 times that.
-inline void try_to_stop(const known_scene& scene, const growing_picture& growing, double target, std::uint64_t seed,
-                        stop_tally& into) {
+template <typename Known, typename Growing>
+void try_to_stop(const Known& scene, Growing& growing, double target, std::uint64_t seed, stop_tally& into) {
     const double oracle = growing.work(growing.within(target));
     std::size_t now = 0;
     const auto advance = [&](double work) {
@@ -106,18 +111,23 @@ inline void try_to_stop(const known_scene& scene, const growing_picture& growing
     into.picture_work.push_back(growing.work(now) / oracle);
 }
 
-/// Targets where an oracle needs 4 to 32 samples a pixel, spread evenly, on four pictures of `method`.
-[[nodiscard]] inline stop_tally stop_trials(const known_scene& scene, std::size_t method) {
+/// The target that the effort names, or those where an oracle needs 4 to 32 samples a pixel, spread evenly; on four
+/// pictures of `method`.
+template <typename Known>
+[[nodiscard]] stop_tally stop_trials(const Known& scene, std::size_t method) {
     stop_tally result{.price = price_of(scene, method)};
     constexpr std::size_t pictures = 4;
+    const std::size_t trials = std::max<std::size_t>(1, scene.how().certificates / pictures);
     for (std::size_t p = 0; p < pictures; ++p) {
-        const growing_picture growing{scene, method, 11 + p, 256};
-        const std::size_t trials = std::max<std::size_t>(1, scene.how().certificates / pictures);
-        for (std::size_t i = 0; i < trials; ++i) {
-            const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(trials);
-            const double target = growing.error(growing.at(4 * std::pow(8.0, share)));
-            try_to_stop(scene, growing, target, aglow::mix(p, i), result);
-        }
+        with_method(scene, scene.scene(), method, 11 + p, mistake::none, [&](const auto& expose) {
+            growing_picture growing{scene, expose, 256};
+            for (std::size_t i = 0; i < trials; ++i) {
+                const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(trials);
+                const double named = scene.how().target;
+                const double target = named > 0 ? named : growing.error(growing.at(4 * std::pow(8.0, share)));
+                try_to_stop(scene, growing, target, aglow::mix(p, i), result);
+            }
+        });
     }
     return result;
 }
