@@ -135,6 +135,7 @@
 #include <aglow/report/audit_pixels.hpp>
 #include <aglow/report/audit_result.hpp>
 #include <aglow/report/audit_sample.hpp>
+#include <aglow/report/audited_film.hpp>
 #include <aglow/report/bias_variance.hpp>
 #include <aglow/report/bootstrap.hpp>
 #include <aglow/report/claim_plan.hpp>
