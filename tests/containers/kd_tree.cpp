@@ -2,11 +2,13 @@
 #include <aglow/containers/kd_tree.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <random>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -292,6 +294,7 @@ TEMPLATE_TEST_CASE("kd_tree: a batch finds what single queries find", "[kd_tree]
         const auto tree = tree_of(points);
         const auto where = queries(points);
         const auto accept = [](std::size_t i, kd_slot slot) { return (slot + i) % 3 != 0; };
+        const std::vector<std::array<double, 16>> payload(tree.size());  // more than is held near by
         for (const T radius2 : {T(0), T(0.01), std::numeric_limits<T>::infinity()}) {
             std::size_t next = 0;
             tree.nearest(where, 30, scratch, {radius2}, [&](std::size_t i, const kd_neighbours<T>& found) {
@@ -308,6 +311,42 @@ TEMPLATE_TEST_CASE("kd_tree: a batch finds what single queries find", "[kd_tree]
                 REQUIRE(std::equal(found.slots.begin(), found.slots.end(), single.slots.begin(), single.slots.end()));
             };
             tree.nearest(where, 30, scratch, {radius2}, check, accept);
+            tree.nearest(where, 30, scratch, {radius2}, check, kd_accept_ahead{std::span{payload}, accept});
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("kd_tree: a batch announces the slots of its leaves before it asks about them", "[kd_tree]", float,
+                   double) {
+    using T = TestType;
+    /// Knows what was announced, and how much was asked about that was not.
+    struct listener {
+        std::vector<char>& announced;
+        std::size_t& wrong;
+        std::size_t& surprises;
+        void expect(kd_slot first, kd_slot last) const {
+            wrong += first >= last || last > announced.size();
+            for (kd_slot i = first; i < last && i < announced.size(); ++i) { announced[i] = 1; }
+        }
+        bool operator()(std::size_t, kd_slot slot) const {
+            surprises += !announced[slot];
+            return true;
+        }
+    };
+    kd_scratch<T> scratch;
+    for (const std::size_t n : {std::size_t{1}, std::size_t{31}, std::size_t{33}, std::size_t{9001}}) {
+        const auto points = cloud<T>("cube", n);
+        const auto tree = tree_of(points);
+        const auto where = std::span<const vec3<T>>{points}.first(std::min<std::size_t>(n, 200));
+        for (const T radius2 : {T(1e-6), T(0.01), std::numeric_limits<T>::infinity()}) {
+            std::vector<char> announced(tree.size());
+            std::size_t wrong = 0, surprises = 0, found = 0;
+            tree.nearest(
+                where, 4, scratch, {radius2}, [&](std::size_t, const auto& near) { found += near.size(); },
+                listener{announced, wrong, surprises});
+            CAPTURE(n, radius2, found);
+            CHECK(wrong == 0);
+            CHECK(surprises <= found / 4);  // a first radius that was too small is searched again, unannounced
         }
     }
 }

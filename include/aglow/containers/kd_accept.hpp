@@ -1,6 +1,7 @@
 // What a search of a kd-tree may find: the caller's word, asked about slots.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +46,29 @@ private:
     const Item* payload_;
 };
 
+/// Says what counts by looking at the payload, `accept(i, slot)` of search i, and while a batch is at one search asks
+/// the memory for what the next will look at: else searches in no order wait for their payload longer than for their
+/// tree. Of payload that memory near by holds, nothing is asked for.
+template <typename Item, typename Accept>
+class kd_accept_ahead {
+public:
+    /// Expects the payload of every slot.
+    kd_accept_ahead(std::span<const Item> payload, const Accept& accept) : payload_{payload}, accept_{accept} {}
+
+    bool operator()(std::size_t i, kd_slot slot) const { return accept_(i, slot); }
+
+    /// Hears that a search may soon ask about slots from `first` to before `last`.
+    void expect(kd_slot first, kd_slot last) const {
+        if (payload_.size_bytes() <= simd::near_memory) { return; }
+        const auto line = [&](kd_slot i) { return reinterpret_cast<const char*>(payload_.data() + i); };
+        for (const char* at = line(first); at < line(last); at += 64) { simd::prefetch(at); }
+    }
+
+private:
+    std::span<const Item> payload_;
+    Accept accept_;
+};
+
 /// Something that says whether the item of a slot may be found: `accept(slot)`. It is asked only about items within
 /// the radius, maybe more than once for one search; what it refuses counts neither towards k nor towards the radius.
 template <typename F>
@@ -87,6 +111,18 @@ kd_filter<T> filter_of(Accept& accept) {
         return {caller, &announce<T, Accept>, nullptr};
     } else {
         return {caller, &refuse<T, Accept>, &accepts<Accept>};
+    }
+}
+
+/// Tells who accepts, if he would hear it, what the leaves hold that a search has listed.
+template <typename T, typename Accept>
+void announce_leaves(const kd_storage<T>& tree, const kd_probe<T>& probe, Accept& accept) {
+    if constexpr (requires { accept.expect(kd_slot{}, kd_slot{}); }) {
+        if (probe.level > 0) { return; }  // none are
+        for (std::uint32_t i = probe.next[0]; i < probe.count[0]; ++i) {
+            const kd_slot first = probe.open[0][i] * kd_leaf_size;
+            accept.expect(first, std::min(first + kd_leaf_size, static_cast<kd_slot>(tree.size)));
+        }
     }
 }
 

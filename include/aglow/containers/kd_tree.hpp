@@ -239,7 +239,9 @@ void kd_tree<T>::nearest(std::span<const vec3<T>> points, std::size_t k, kd_scra
             probes[i].enough = enough<Accept>(what);
         }
         runner::template run<detail::approach_kernel>(tree_, probes, what, std::span<T>{radius2});
+        detail::announce_leaves(tree_, probes.front(), accept);
         for (std::size_t i = 0; i < probes.size(); ++i) {
+            if (i + 1 < probes.size()) { detail::announce_leaves(tree_, probes[i + 1], accept); }
             auto accepts_here = [&, at = first + i](kd_slot slot) { return accept(at, slot); };
             detail::kd_filter<T> filter;
             if constexpr (detail::kd_accepts_all<Accept>) {
