@@ -88,6 +88,7 @@
 #include <aglow/estimators/linear_light.hpp>
 #include <aglow/estimators/photon.hpp>
 #include <aglow/estimators/photon_map.hpp>
+#include <aglow/estimators/photon_store.hpp>
 #include <aglow/estimators/record_blend.hpp>
 #include <aglow/estimators/record_lanes.hpp>
 #include <aglow/estimators/record_neighbours.hpp>

@@ -3,11 +3,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include <aglow/core/parallel.hpp>
 #include <aglow/core/random.hpp>
+#include <aglow/estimators/compact_photon.hpp>
 
 #include "support/catch.hpp"
 #include "support/statistics.hpp"
@@ -355,6 +358,101 @@ TEST_CASE("photon_map: a faint light keeps its photons beside one 1e30 times as 
     const auto strong = map.irradiance({10.095f, 0.095f, 0}, upf, within);
     CHECK(faint.value == Approx(1e-15f * static_cast<float>(faint.count) / (pi<float> * 0.0025f)).epsilon(1e-5));
     CHECK(strong.value / faint.value == Approx(1e30f).epsilon(1e-2));
+}
+
+namespace {
+
+struct floor_place {
+    vec3<float> position, normal;
+};
+
+/// Places above, below, beside and far off photons on a floor of the unit square.
+std::vector<floor_place> floor_places(std::size_t count) {
+    random_sampler<float> random{21};
+    std::vector<floor_place> places;
+    while (places.size() < count) {
+        const vec2<float> u = random.next_2d() * 1.4f - 0.7f;
+        const std::size_t i = places.size();
+        places.push_back({{u.x, u.y, i % 7 == 0 ? 0.01f : 0.0f}, i % 5 == 0 ? -upf : upf});
+        if (i % 11 == 0) { places.back().position += glm::vec3{50, 0, 0}; }
+        if (i % 13 == 0) { places.back().normal = {1, 0, 0}; }
+    }
+    return places;
+}
+
+template <typename Map>
+void check_batches(const Map& map, const density_options& options) {
+    using estimate = density_estimate<glm::vec3, float>;
+    const auto same = [](const estimate& a, const estimate& b) {
+        return a.value == b.value && a.error == b.error && a.common == b.common && a.bias == b.bias &&
+               a.count == b.count && a.radius == b.radius;
+    };
+    const auto odd = [](std::size_t place, std::size_t photon) { return (place + photon) % 3 != 0; };
+    for (const std::size_t count : {0u, 1u, 7u, 1000u}) {
+        const std::vector<floor_place> places = floor_places(count);
+        const std::span<const floor_place> all{places};
+        std::vector<estimate> each(count), some(count);
+        map.irradiance_each(all, std::span<estimate>{each}, options);
+        map.irradiance_each(all, std::span<estimate>{some}, options, odd);
+        std::size_t wrong = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto here = [&](std::size_t photon) { return odd(i, photon); };
+            wrong += !same(each[i], map.irradiance(places[i].position, places[i].normal, options));
+            wrong += !same(some[i], map.irradiance(places[i].position, places[i].normal, options, here));
+        }
+        CAPTURE(count, map.size(), options.count);
+        CHECK(wrong == 0);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("photon_map: many places asked at once get what each gets alone, to the bit") {
+    const auto many = {density_options{}, density_options{.count = 7, .shrink = 0.5, .kernel = kernel_shape::cone},
+                       density_options{.count = 3, .max_radius = 0.02}, density_options{.count = 0},
+                       density_options{.count = 5000}};
+    // None, fewer than are asked for, many, and so many that memory is asked for them ahead.
+    for (const int count : {0, 1, 20, 2000, 80000}) {
+        auto photons = colourful(1, 1e-3f, count);
+        for (std::size_t i = 0; i < photons.size(); i += 3) {
+            photons[i].what.wi = packed_direction<std::int16_t>{-upf};
+        }
+        const photon_map<glm::vec3, float> full{photons};
+        const photon_map<glm::vec3, float, compact_photon<glm::vec3>> compact{full};
+        for (const density_options& options : many) {
+            check_batches(full, options);
+            check_batches(compact, options);
+        }
+    }
+    // So close together that positions can not tell them apart.
+    const std::vector<landed_photon<glm::vec3, float>> pile(20000, on_floor<glm::vec3, float>(0.1f, 0.2f, {1, 2, 3}));
+    check_batches(photon_map<glm::vec3, float>{pile}, {.max_radius = 1});
+}
+
+TEST_CASE("photon_map: a batch tells how far from black it may be where no photons are") {
+    photon_map<glm::vec3, float> map{colourful(1, 1e-3f)};
+    map.come_in_bunches(4);
+    const std::array<floor_place, 2> places{{{{9, 9, 0}, upf}, {{0, 0, 0}, upf}}};
+    std::array<density_estimate<glm::vec3, float>, 2> found;
+    map.irradiance_each(std::span<const floor_place>{places}, std::span{found}, {.max_radius = 0.5});
+    CHECK(found[0].count == 0);
+    CHECK(found[0].value == glm::vec3{0});
+    CHECK(found[0].error > 0);
+    CHECK(found[1].count > 0);
+}
+
+TEST_CASE("photon_map: several threads ask batches of one map at the same time and hear the same") {
+    const photon_map<glm::vec3, float> map{colourful(1, 1e-3f, 50000)};
+    const std::vector<floor_place> places = floor_places(4096);
+    std::vector<density_estimate<glm::vec3, float>> one(places.size()), crew(places.size());
+    map.irradiance_each(std::span<const floor_place>{places}, std::span{one});
+    for_each_block(own_threads{4}, places.size(), 100, [&](std::size_t, std::size_t first, std::size_t last) {
+        map.irradiance_each(std::span<const floor_place>{places}.subspan(first, last - first),
+                            std::span{crew}.subspan(first, last - first));
+    });
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) { wrong += one[i].value != crew[i].value; }
+    CHECK(wrong == 0);
 }
 
 TEST_CASE("photon_map: radiance is each photon's power times the BSDF, of both sides where asked") {
