@@ -81,42 +81,6 @@ TEST_CASE("precompute_irradiance: 1, 2, 3 and 8 threads and any executor know th
     check(archetypes::executor{});
 }
 
-TEST_CASE("precompute_irradiance: even light is as bright at a wall and in a corner as in the middle of the floor") {
-    // 1 W/m² on the floor of a room of 2 x 2 m. Half of a photon's disc at a wall, three quarters in a corner, lie
-    // where no photon can be.
-    toy_scene<S, float> room;
-    room.rectangles = support::box_walls<S, float>(1.0f, {.diffuse = S{0.5f}});
-    const vec3<float> up{0, 0, 1};
-    const auto shape = GENERATE(kernel_shape::constant, kernel_shape::cone, kernel_shape::epanechnikov,
-                                kernel_shape::biweight, kernel_shape::gaussian);
-    random_sampler<float> random{5};
-    sample_mean middle, wall, near_wall, corner;
-    for (int run = 0; run < 200; ++run) {
-        std::vector<landed_photon<S, float>> photons;
-        for (int i = 0; i < 4000; ++i) {
-            const vec2<float> u = random.next_2d();
-            const packed_direction<std::int16_t> facing{up};
-            photons.push_back({{2 * u.x - 1, 2 * u.y - 1, -1}, {S{4 / 4000.0f}, facing, facing}});
-        }
-        const photon_map<S, float> map{photons};
-        const auto at = [&](float x, float y) {
-            const irradiance_options few{.density = {.count = 50, .kernel = shape}};
-            return double(
-                detail::seen_irradiance<toy_scene<S, float>, S>(room, map, {x, y, -1}, up, 1e-5f, few).value.x);
-        };
-        const float along = 1.6f * random.next_1d() - 0.8f;
-        middle.add(at(along / 2, 0));
-        wall.add(at(along, 0.999f));
-        near_wall.add(at(-0.94f, along));
-        corner.add(at(0.999f, -0.999f));
-    }
-    for (const sample_mean& m : {middle, wall, near_wall, corner}) {
-        CAPTURE(m.mean(), m.standard_error());
-        CHECK(std::abs(m.mean() - 1) < 0.02 + 3 * m.standard_error());
-        CHECK(m.standard_error() < 0.02);
-    }
-}
-
 TEST_CASE("precompute_irradiance: maps of nothing give no points") {
     const photon_maps<S, float> none;
     CHECK(precompute_irradiance(sphere(0.5f), lamp, none).empty());

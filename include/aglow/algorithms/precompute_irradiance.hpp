@@ -4,19 +4,21 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/photon_options.hpp>
+#include <aglow/algorithms/seen_irradiance.hpp>
 #include <aglow/core/callback.hpp>
-#include <aglow/core/frame.hpp>
 #include <aglow/core/sobol.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
-#include <aglow/estimators/kernel.hpp>
 
 namespace aglow {
 
@@ -65,100 +67,11 @@ template <Scene World, Illuminator Lights>
 
 namespace detail {
 
-/// What cuts through discs around a point on a surface: how far twelve spokes in its plane are free.
-template <std::floating_point T>
-class disc_cut {
-public:
-    static constexpr int spokes = 12;
-
-    /// Looks as far as `radius`. What is met with a normal within `alike` (a cosine) is the surface itself, hollow.
-    template <Intersector World>
-    disc_cut(const World& scene, const vec3<T>& from, const vec3<T>& normal, T radius, T alike = 1) {
-        free_.fill(radius);
-        const frame<T> axes{normal};
-        // Every other one at first: most discs are whole.
-        for (int i = 0; i < spokes; i += 2) { cut_ = cut_ || scene.occluded(from, from + spoke(axes, i) * radius); }
-        for (int i = 0; cut_ && i < spokes; ++i) {
-            const vec3<T> towards = spoke(axes, i);
-            const auto hit = scene.intersect(ray<T>{from, towards, radius});
-            if (!hit || std::abs(glm::dot(vec3<T>(hit->normal), normal)) > alike) { continue; }
-            const T distance = glm::dot(vec3<T>(hit->position) - from, towards);
-            if (distance < radius) { free_[static_cast<std::size_t>(i)] = std::max(T(0), distance); }
-        }
-    }
-
-    /// Whether anything does.
-    explicit operator bool() const { return cut_; }
-
-    /// The share of a kernel of `radius` that lies where its middle can see; never below a tenth, so that the noise
-    /// of few photons in a crevice is not blown up.
-    template <typename Kernel>
-    [[nodiscard]] T share(T radius, const Kernel& kernel) const {
-        if (!cut_ || !(radius > 0)) { return 1; }
-        T sum{};
-        for (const T f : free_) { sum += f < radius ? mass(kernel, square(f / radius)) : T(1); }
-        return std::max(T(0.1), sum / spokes);
-    }
-
-private:
-    /// Of the kernel within `rho2`, by Simpson's rule, which is exact for the polynomials among them.
-    template <typename Kernel>
-    static T mass(const Kernel& kernel, T rho2) {
-        return std::min(T(1), pi<T> * rho2 / 6 * (kernel(T(0)) + 4 * kernel(rho2 / 2) + kernel(rho2)));
-    }
-
-    /// Off the axes, along which walls are built.
-    static vec3<T> spoke(const frame<T>& axes, int i) {
-        const T angle = 2 * pi<T> / spokes * (static_cast<T>(i) + T(0.5));
-        return axes.x * std::cos(angle) + axes.y * std::sin(angle);
-    }
-
-    std::array<T, spokes> free_{};
-    bool cut_{false};
-};
-
-/// Whether photon `i` gives its place to a point: by chance, since photons of near indices lie near each other.
-[[nodiscard]] inline bool is_place(std::size_t i, const irradiance_options& options) {
-    return mix(options.seed, i) % options.every == 0;
-}
-
-/// Whether photons that give their places are left out of the irradiance there. They would make it too bright, or,
-/// each left out at its own place alone, too dark: a point stands for more of the surface where photons happen to
-/// lie farther apart. Places that the photons counted know nothing of make neither.
-[[nodiscard]] inline bool places_apart(const irradiance_options& options) { return options.every >= 3; }
-
-/// Irradiance from photons that can be seen from the point, over the part of their disc that can: behind a thin
-/// wall in the middle of it lie photons of the same plane, side and normal, which no test of these can tell apart,
-/// and in the corner of a room half of it lies beyond the wall, where no photon can be.
-template <Intersector World, Spectrum S>
-[[nodiscard]] density_estimate<S, scalar_of<World>> seen_irradiance(
-    const World& scene, const photon_map<S, scalar_of<World>>& map, const vec3<scalar_of<World>>& point,
-    const vec3<scalar_of<World>>& normal, scalar_of<World> error, const irradiance_options& options) {
-    using T = scalar_of<World>;
-    const auto counts = [&](std::size_t i) { return !places_apart(options) || !is_place(i, options); };
-    const band_of<S> apart =
-        places_apart(options) ? static_cast<band_of<S>>(options.every) / static_cast<band_of<S>>(options.every - 1) : 1;
-    auto seen = map.irradiance(point, normal, options.density, counts);
-    const vec3<T> from = point + normal * error;
-    if (seen.count == 0) { return seen.times(apart); }
-    const T alike = static_cast<T>(options.density.normal_cosine);
-    disc_cut<T> cut{scene, from, normal, seen.radius, alike};
-    if (!cut) { return seen.times(apart); }
-    const T before = seen.radius;
-    seen = map.irradiance(point, normal, options.density, [&](std::size_t i) {
-        return counts(i) && !scene.occluded(from, map.position(i) + normal * error);
-    });
-    if (seen.radius > before) { cut = disc_cut<T>{scene, from, normal, seen.radius, alike}; }
-    const auto share = [&](T radius) {
-        return with_kernel(options.density.kernel, [&](const auto& k) { return band_of<S>(cut.share(radius, k)); });
-    };
-    const band_of<S> wide = 1 / share(seen.radius);
-    const band_of<S> level = max_component(seen.value);
-    // The bias is told by what half the radius gives, of which less is cut off.
-    const band_of<S> half = (level - seen.bias / 2) / share(seen.radius / 2);
-    auto made = seen.times(apart * wide);
-    made.bias = 2 * (level * wide - half) * apart;
-    return made;
+/// Which of `count` photons give their places to points: by chance, since photons of near indices lie near each other.
+[[nodiscard]] inline std::vector<char> chosen_places(std::size_t count, const irradiance_options& options) {
+    std::vector<char> chosen(count);
+    for (std::size_t i = 0; i < count; ++i) { chosen[i] = mix(options.seed, i) % options.every == 0; }
+    return chosen;
 }
 
 /// What one point adds to what all points are off by together. Photons lie densely where it is bright, so a point
@@ -192,8 +105,8 @@ template <Spectrum S, std::floating_point T>
     return {(sum.indirect * indirect + sum.caustic * caustic) / sum.all, sum.bias / sum.all};
 }
 
-/// Fills all points, block by block and far apart from one block to the next, and drops those that were not reached
-/// when `progress` said to stop.
+/// Fills all points, `fill(first, count)` a block and far apart from one block to the next, and drops those that were
+/// not reached when `progress` said to stop.
 template <typename Point, typename Fill, Executor Run>
 void keep_filled(std::vector<Point>& points, const callback<double>& progress, const Fill& fill, const Run& run) {
     constexpr std::size_t block = 64;
@@ -205,8 +118,7 @@ void keep_filled(std::vector<Point>& points, const callback<double>& progress, c
     run(blocks, [&](std::size_t task) {
         if (stop) { return; }
         const std::size_t b = task * step % blocks;
-        const std::size_t last = std::min(points.size(), (b + 1) * block);
-        for (std::size_t i = b * block; i < last; ++i) { fill(i); }
+        fill(b * block, std::min(block, points.size() - b * block));
         filled[b] = 1;
         const double share = static_cast<double>(++done) / static_cast<double>(blocks);
         if (progress && !progress(share)) { stop = true; }
@@ -218,6 +130,101 @@ void keep_filled(std::vector<Point>& points, const callback<double>& progress, c
     }
     points = std::move(kept);
 }
+
+/// A point at each of the photons that give their places, map by map, in the order of the maps.
+template <Spectrum S, std::floating_point T>
+[[nodiscard]] std::vector<irradiance_point<S, T>> points_at(const photon_maps<S, T>& maps,
+                                                            const std::vector<char>& chosen) {
+    std::vector<irradiance_point<S, T>> points;
+    for (const photon_map<S, T>* map : {&maps.direct, &maps.caustic, &maps.indirect}) {
+        for (std::size_t i = 0; i < map->size(); ++i) {
+            if (!chosen[i]) { continue; }
+            points.push_back({.position = map->position(i),
+                              .normal = glm::normalize(map->photons()[i].normal.template direction<T>())});
+        }
+    }
+    return points;
+}
+
+/// How far rays are lifted off the surfaces that photons landed on.
+template <Spectrum S, std::floating_point T>
+[[nodiscard]] T lift_of(const photon_maps<S, T>& maps) {
+    bounds<T> all = maps.direct.box();
+    all.add(maps.caustic.box());
+    all.add(maps.indirect.box());
+    return 4 * position_error(all.empty() ? T(0) : std::max(max_abs(all.low), max_abs(all.high)));
+}
+
+/// Works out the light at points, some neighbours at a time. Keeps references; `const`, safe from many threads.
+template <Scene World, Illuminator Lights>
+class point_light {
+    using S = spectrum_of<World>;
+    using T = scalar_of<World>;
+    using point = irradiance_point<S, T>;
+    using seen = seen_estimate<S, T>;
+
+public:
+    /// Photons that were `chosen` for places are left out, where at least every third is. They would make it too
+    /// bright, or, each left out at its own place alone, too dark: a point stands for more of the surface where photons
+    /// happen to lie farther apart. Places that the photons counted know nothing of make neither.
+    point_light(const World& scene, const Lights& lights, const photon_maps<S, T>& maps,
+                const irradiance_options& options, const std::vector<char>& chosen)
+        : scene_{scene}, lights_{lights}, maps_{maps}, options_{options}, error_{lift_of(maps)} {
+        if (options.every < 3) { return; }
+        left_out_ = chosen;
+        factor_ = static_cast<band_of<S>>(options.every) / static_cast<band_of<S>>(options.every - 1);
+    }
+
+    /// Lights `points`, the first of which is `first` among all, and tells their `parts`. Expects as many of these.
+    void operator()(std::span<point> points, std::size_t first, std::span<shared_part> parts) const {
+        const std::vector<seen> indirect = from(maps_.indirect, points);
+        const std::vector<seen> caustic = from(maps_.caustic, points);
+        const std::vector<S> direct = options_.shadow_rays == 0 ? mapped(points) : sampled(points, first);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            point& p = points[i];
+            p.irradiance = direct[i] + indirect[i].value;
+            p.caustic = caustic[i].value;
+            p.error = caustic[i].error + indirect[i].error;
+            p.radius = indirect[i].count > 0 ? indirect[i].radius : T(0);
+            p.cut = cut(p, indirect[i], caustic[i]);
+            parts[i] = shared_part_of<S, T>(direct[i], indirect[i], caustic[i]);
+        }
+    }
+
+private:
+    [[nodiscard]] std::vector<seen> from(const photon_map<S, T>& map, std::span<const point> points) const {
+        return seen_irradiance<World, S>{scene_, map, options_.density, error_, left_out_, factor_}(points);
+    }
+    [[nodiscard]] std::vector<S> mapped(std::span<const point> points) const {
+        std::vector<S> direct;
+        for (const seen& s : from(maps_.direct, points)) { direct.push_back(s.value); }
+        return direct;
+    }
+    [[nodiscard]] std::vector<S> sampled(std::span<const point> points, std::size_t first) const {
+        std::vector<S> direct;
+        for (const point& p : points) {
+            direct.push_back(direct_irradiance(scene_, lights_, p.position, p.normal, error_, options_.shadow_rays,
+                                               mix(options_.seed, first + direct.size())));
+        }
+        return direct;
+    }
+
+    /// Whether anything cuts through the wider of both discs.
+    [[nodiscard]] bool cut(const point& p, const seen& indirect, const seen& caustic) const {
+        const seen& wider = p.radius < caustic.radius ? caustic : indirect;
+        if (wider.count > 0) { return wider.cut; }
+        const T radius = std::max(p.radius, caustic.radius);
+        return static_cast<bool>(disc_cut<T>{scene_, p.position + p.normal * error_, p.normal, radius});
+    }
+
+    const World& scene_;
+    const Lights& lights_;
+    const photon_maps<S, T>& maps_;
+    const irradiance_options& options_;
+    T error_;
+    std::vector<char> left_out_{};
+    band_of<S> factor_{1};
+};
 
 }  // namespace detail
 
@@ -231,41 +238,13 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
     using S = spectrum_of<World>;
     using T = scalar_of<World>;
     options.every = std::max<std::size_t>(1, options.every);
-    std::vector<irradiance_point<S, T>> points;
-    const auto choose = [&](const photon_map<S, T>& map) {
-        for (std::size_t i = 0; i < map.size(); ++i) {
-            if (!detail::is_place(i, options)) { continue; }
-            points.push_back({.position = map.position(i),
-                              .normal = glm::normalize(map.photons()[i].normal.template direction<T>())});
-        }
-    };
-    choose(maps.direct);
-    choose(maps.caustic);
-    choose(maps.indirect);
-    const T error = 4 * position_error([&] {
-                        bounds<T> all = maps.direct.box();
-                        all.add(maps.caustic.box());
-                        all.add(maps.indirect.box());
-                        return all.empty() ? T(0) : std::max(max_abs(all.low), max_abs(all.high));
-                    }());
+    const std::size_t most = std::max({maps.direct.size(), maps.caustic.size(), maps.indirect.size()});
+    const std::vector<char> chosen = detail::chosen_places(most, options);
+    std::vector<irradiance_point<S, T>> points = detail::points_at(maps, chosen);
     std::vector<detail::shared_part> parts(points.size());
-    const auto fill = [&](std::size_t i) {
-        irradiance_point<S, T>& p = points[i];
-        const auto seen = [&](const photon_map<S, T>& map) {
-            return detail::seen_irradiance<World, S>(scene, map, p.position, p.normal, error, options);
-        };
-        const auto indirect = seen(maps.indirect);
-        const auto caustic = seen(maps.caustic);
-        const S direct = options.shadow_rays == 0 ? seen(maps.direct).value
-                                                  : direct_irradiance(scene, lights, p.position, p.normal, error,
-                                                                      options.shadow_rays, mix(options.seed, i));
-        p.irradiance = direct + indirect.value;
-        p.caustic = caustic.value;
-        p.error = caustic.error + indirect.error;
-        p.radius = indirect.count > 0 ? indirect.radius : T(0);
-        parts[i] = detail::shared_part_of<S, T>(direct, indirect, caustic);
-        p.cut = static_cast<bool>(
-            detail::disc_cut<T>{scene, p.position + p.normal * error, p.normal, std::max(p.radius, caustic.radius)});
+    const detail::point_light<World, Lights> light{scene, lights, maps, options, chosen};
+    const auto fill = [&](std::size_t first, std::size_t count) {
+        light(std::span{points}.subspan(first, count), first, std::span{parts}.subspan(first, count));
     };
     detail::keep_filled(points, options.progress, fill, run);
     shared_error shared = detail::shared_by(parts, maps.indirect.common, maps.caustic.common);
