@@ -70,6 +70,22 @@ void final_gathering(benchmark::State& state, const World& scene) {
     samples(state, scene, aglow::final_gathering<World, lights>{scene, scene.lights(), options});
 }
 
+/// Irradiance at one in four of `range(0)` indirect photons and as many caustic ones, where there are any.
+template <typename World>
+void points(benchmark::State& state, const World& scene, unsigned threads) {
+    const auto wanted = static_cast<std::size_t>(state.range(0));
+    const auto maps = aglow::trace_photons(scene, scene.lights(), {.caustic = wanted, .indirect = wanted});
+    const std::size_t photons = maps.caustic.size() + maps.indirect.size();
+    std::size_t made = 0;
+    for (auto _ : state) {
+        made = aglow::precompute_irradiance(scene, scene.lights(), maps, {}, aglow::own_threads{threads}).size();
+        benchmark::DoNotOptimize(made);
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(photons));
+    state.SetComplexityN(state.range(0));
+    state.counters["photons_per_point"] = static_cast<double>(photons) / static_cast<double>(made);
+}
+
 /// One record in the middle of the floor, its rays path-traced.
 void record(benchmark::State& state) {
     const auto& scene = diffuse();
@@ -99,6 +115,9 @@ const bool asked = [] {
         };
         over_sizes(ask(paths + "diffuse" + crew, [=](benchmark::State& s) { photons(s, diffuse(), threads); }));
         over_sizes(ask(paths + "glass" + crew, [=](benchmark::State& s) { photons(s, glass(), threads); }));
+        const std::string ahead = "precompute_irradiance/how_many_photons_a_second/";
+        over_sizes(ask(ahead + "diffuse" + crew, [=](benchmark::State& s) { points(s, diffuse(), threads); }));
+        over_sizes(ask(ahead + "glass" + crew, [=](benchmark::State& s) { points(s, glass(), threads); }));
     }
     const std::string seen = "how_many_samples_a_second/";
     ask("path_trace/" + seen + "diffuse", [](benchmark::State& s) { path_tracing(s, diffuse()); });

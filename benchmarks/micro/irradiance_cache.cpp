@@ -1,4 +1,7 @@
 // Irradiance records: how long one takes to be worked out from its hemisphere, inserted, and looked up.
+#include <span>
+#include <vector>
+
 #include <aglow/estimators/irradiance_cache.hpp>
 
 #include "micro/question.hpp"
@@ -95,6 +98,26 @@ void look_up_frozen(benchmark::State& state, bool coherent) {
     if (state.thread_index() == 0) { micro::count_bytes(state, from.bytes(), from.size()); }
 }
 
+/// An item is a lookup, of 1,024 in step.
+void look_up_in_step(benchmark::State& state, bool coherent) {
+    constexpr std::size_t batch = 1024;
+    const cache::frozen& from = frozen_of(state.range(0));
+    const std::span<const wall_place> all{micro::wall_questions(coherent)};
+    std::vector<aglow::irradiance_answer<rgb, float>> answers(batch);
+    std::size_t first = 0;
+    std::uint64_t blended = 0;
+    for (auto _ : state) {
+        from.lookup_each(all.subspan(first, batch), std::span{answers});
+        benchmark::DoNotOptimize(answers.data());
+        blended += answers.front().records;
+        first = (first + batch) % all.size();
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch));
+    state.SetComplexityN(state.range(0));
+    micro::count_bytes(state, from.bytes(), from.size());
+    state.counters["records"] = static_cast<double>(blended) / static_cast<double>(state.iterations());
+}
+
 const bool asked = [] {
     const auto over_sizes = [](benchmark::internal::Benchmark* question) { return micro::sizes(question, largest); };
     const auto over_rays = [](benchmark::internal::Benchmark* question) {
@@ -115,6 +138,9 @@ const bool asked = [] {
         const std::string order = coherent ? "/coherent" : "/random";
         over_sizes(ask(how_long + "one_lookup_take/growing" + order, look_up, coherent))->Complexity(benchmark::oLogN);
         over_sizes(ask(how_long + "one_lookup_take/frozen" + order, look_up_frozen, coherent))
+            ->Complexity(benchmark::oLogN);
+        over_sizes(ask("irradiance_cache/how_long_do_1024_lookups_take_in_step" + order, look_up_in_step, coherent))
+            ->Unit(benchmark::kMicrosecond)
             ->Complexity(benchmark::oLogN);
     }
     ask("irradiance_cache/how_do_readers_scale/growing", look_up, false)->Arg(10000)->ThreadRange(1, 2);

@@ -1,4 +1,7 @@
 // Photon maps and irradiance points: how long one estimate takes over the number of photons.
+#include <span>
+#include <vector>
+
 #include <aglow/core/parallel.hpp>
 #include <aglow/estimators/compact_photon.hpp>
 #include <aglow/estimators/irradiance_points.hpp>
@@ -78,6 +81,27 @@ void estimate(benchmark::State& state, aglow::density_options options, bool cohe
     state.counters["photons"] = static_cast<double>(used) / static_cast<double>(state.iterations());
 }
 
+/// An item is an estimate, of 1,024 asked for at once.
+template <typename Map>
+void estimates(benchmark::State& state, aglow::density_options options, bool coherent) {
+    constexpr std::size_t batch = 1024;
+    const Map& map = map_of<Map>(state.range(0));
+    const std::span<const wall_place> all{micro::wall_questions(coherent)};
+    std::vector<aglow::density_estimate<rgb, float>> found(batch);
+    std::size_t first = 0;
+    std::uint64_t used = 0;
+    for (auto _ : state) {
+        map.irradiance_each(all.subspan(first, batch), std::span{found}, options);
+        benchmark::DoNotOptimize(found.data());
+        used += found.front().count;
+        first = (first + batch) % all.size();
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch));
+    state.SetComplexityN(state.range(0));
+    micro::count_bytes(state, map.memory(), map.size());
+    state.counters["photons"] = static_cast<double>(used) / static_cast<double>(state.iterations());
+}
+
 void read_point(benchmark::State& state, bool coherent) {
     const irradiance_points& points = points_of(state.range(0));
     micro::round_trip<wall_place> trip{micro::wall_questions(coherent)};
@@ -109,6 +133,14 @@ const bool asked = [] {
             over_sizes(ask("photon_map" + question, estimate<photon_map>, nearest, coherent))
                 ->Complexity(benchmark::oLogN);
             over_sizes(ask("compact_photon" + question, estimate<compact_map>, nearest, coherent))
+                ->Complexity(benchmark::oLogN);
+            const std::string in_batches =
+                "/how_long_do_1024_estimates_from_" + std::to_string(k) + "_take_at_once" + order;
+            over_sizes(ask("photon_map" + in_batches, estimates<photon_map>, nearest, coherent))
+                ->Unit(benchmark::kMicrosecond)
+                ->Complexity(benchmark::oLogN);
+            over_sizes(ask("compact_photon" + in_batches, estimates<compact_map>, nearest, coherent))
+                ->Unit(benchmark::kMicrosecond)
                 ->Complexity(benchmark::oLogN);
         }
         over_sizes(ask("photon_map/how_long_does_an_estimate_within_a_radius_take" + order, estimate<photon_map>,
