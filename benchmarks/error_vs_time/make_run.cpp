@@ -18,7 +18,7 @@
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/pixel_probe.hpp>
 #include <aglow/algorithms/progressive.hpp>
-#include <aglow/report/audit.hpp>
+#include <aglow/report/audited_film.hpp>
 #include <aglow/report/statement.hpp>
 
 #include "common/counted_scene.hpp"
@@ -49,18 +49,6 @@ double peak_bytes() {
         if (line.rfind("VmHWM:", 0) == 0) { return 1024 * std::stod(line.substr(6)); }
     }
     return 0;
-}
-
-std::vector<float> values_of(const aglow::film<rgb>& film) {
-    std::vector<float> values;
-    values.reserve(3 * film.width() * film.height());
-    for (std::size_t y = 0; y < film.height(); ++y) {
-        for (std::size_t x = 0; x < film.width(); ++x) {
-            const rgb p = film.radiance(x, y);
-            values.insert(values.end(), {p.x, p.y, p.z});
-        }
-    }
-    return values;
 }
 
 /// Calls `use` with the scene, as a diffuse one where it is; its rays are counted.
@@ -125,8 +113,9 @@ public:
         count("rays", static_cast<double>(host::ray_count::all_nearest() - nearest));
         count("shadow rays", static_cast<double>(host::ray_count::all_shadow() - shadow));
         note.seed = seed_;
-        run_.values = values_of(film_);
-        for (std::size_t i = 0; i < size_ * size_; ++i) { run_.guess.push_back(film_.error(i % size_, i / size_)); }
+        const aglow::audited_film numbers{film_};
+        run_.values = numbers.values();
+        run_.guess = numbers.guess();
         return std::move(run_);
     }
 
@@ -251,7 +240,7 @@ reference_halves path_traced(const host::scene_description<float>& scene, std::u
             const auto told = [&](double share) { return !progress || progress(before + 0.5 * share); };
             film.expose([&](const aglow::vec2<float>& p) { return world.view().through(p, size, size); }, tracer,
                         {.samples = samples, .seed = seed, .progress = told}, aglow::own_threads{});
-            return values_of(film);
+            return aglow::audited_film{film}.values();
         };
         std::vector<float> first = half(90001, 0);
         return reference_halves{std::move(first), half(90002, 0.5)};

@@ -1,4 +1,4 @@
-// A film as an audit wants to see it: plain numbers, guesses and classes of pixels.
+// A film as an audit wants to see it, with classes of pixels that error bars hold in.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <aglow/algorithms/film.hpp>
-#include <aglow/report/audit.hpp>
+#include <aglow/report/audited_film.hpp>
 
 #include "common/picture.hpp"
 
@@ -15,46 +15,35 @@ namespace host {
 
 using aglow::vec3;
 
-/// The numbers of a film at one moment.
-class audited_film {
+/// The numbers of a film at one moment, and its classes.
+class classified_film {
 public:
     /// `feature` tells of each pixel whether another primitive is near; together with how large the guess is beside the
     /// light, and with the darkest tenth, it makes the classes that error bars hold in.
     /// `caustic` is the light that caustics add to each pixel: those that owe a tenth of theirs to them are one class
     /// more; empty where the scene has none.
-    audited_film(const aglow::film<vec3<float>>& film, const std::vector<char>& feature,
-                 const std::vector<float>& caustic)
-        : audited_film{film} {
+    classified_film(const aglow::film<vec3<float>>& film, const std::vector<char>& feature,
+                    const std::vector<float>& caustic)
+        : numbers_{film} {
+        const std::vector<float>& values = numbers_.values();
+        const std::vector<float>& guess = numbers_.guess();
         std::vector<double> hardness;
         std::vector<double> light;
-        for (std::size_t i = 0; i < guess_.size(); ++i) {
-            light.push_back(static_cast<double>(values_[3 * i] + values_[3 * i + 1] + values_[3 * i + 2]));
-            hardness.push_back(static_cast<double>(guess_[i]) / std::max(1e-30, light.back()));
+        for (std::size_t i = 0; i < guess.size(); ++i) {
+            light.push_back(static_cast<double>(values[3 * i] + values[3 * i + 1] + values[3 * i + 2]));
+            hardness.push_back(static_cast<double>(guess[i]) / std::max(1e-30, light.back()));
         }
         const double hard = quantile(hardness, 0.75);
         const double dark = quantile(light, 0.1);
         for (std::size_t i = 0; i < light.size(); ++i) {
             const std::uint32_t kind = (hardness[i] > hard ? 2u : 0u) + (feature[i] ? 1u : 0u);
-            const float most = std::max({values_[3 * i], values_[3 * i + 1], values_[3 * i + 2]});
+            const float most = std::max({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
             const bool in_caustic = !caustic.empty() && caustic[i] > 0.1f * most;
             classes_.push_back(in_caustic ? 5u : light[i] <= dark ? 4u : kind);
         }
     }
 
-    /// Without classes: for claims on the whole picture.
-    explicit audited_film(const aglow::film<vec3<float>>& film) : width_{film.width()}, height_{film.height()} {
-        for (std::size_t y = 0; y < height_; ++y) {
-            for (std::size_t x = 0; x < width_; ++x) {
-                const vec3<float> p = film.radiance(x, y);
-                values_.insert(values_.end(), {p.x, p.y, p.z});
-                guess_.push_back(film.error(x, y));
-            }
-        }
-    }
-
-    [[nodiscard]] aglow::audited_picture<float> view() const {
-        return {.image = {values_, width_, height_, 3}, .guess = guess_, .classes = classes_};
-    }
+    [[nodiscard]] aglow::audited_picture<float> view() const { return numbers_.view(classes_); }
 
 private:
     static double quantile(std::vector<double> of, double share) {
@@ -63,10 +52,7 @@ private:
         return *at;
     }
 
-    std::size_t width_;
-    std::size_t height_;
-    std::vector<float> values_{};
-    std::vector<float> guess_{};
+    aglow::audited_film<float> numbers_;
     std::vector<std::uint32_t> classes_{};
 };
 

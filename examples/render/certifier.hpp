@@ -21,6 +21,7 @@
 #include "common/audited_film.hpp"
 #include "common/camera.hpp"
 #include "common/developed.hpp"
+#include "common/interruption.hpp"
 #include "common/light_set.hpp"
 #include "common/probe_paths.hpp"
 #include "render/options.hpp"
@@ -48,7 +49,7 @@ public:
                                        const time_budget& budget, render_result& result) {
         const double begun = budget.spent();
         aglow::film<S> film{options_.width, options_.height};
-        std::optional<audited_film> numbers;
+        std::optional<aglow::audited_film<T>> numbers;
         const auto advance = [&](double work) {
             const auto wanted = static_cast<std::uint32_t>(std::ceil(work));
             film.expose(eye(), integrator, {.samples = wanted - film.samples(), .seed = options_.seed}, run_);
@@ -58,30 +59,42 @@ public:
         o.audit = {.target = options_.until, .seed = options_.seed};
         o.first_work = 4;
         o.most_work = 1 << 16;
-        o.probe_work = probe_work(integrator, lookups);
         o.progress = [&](const aglow::until_progress& p) {
             std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
             return !budget.is_over();
         };
-        const aglow::until_result reached =
-            with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, run_); });
+        try {
+            o.probe_work = probe_work(integrator, lookups);
+            const aglow::until_result reached =
+                with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, probing_); });
+            tell(reached, budget, result);
+        } catch (const interrupted&) {
+            if (film.samples() == 0) { (void)advance(o.first_work); }
+            tell({.status = aglow::until_status::cancelled}, budget, result);
+        }
         result.phases.push_back({"picture and audits", budget.spent() - begun});
         result.add_fact("samples a pixel", film.samples());
-        tell(reached, result);
         return film;
     }
 
     /// Audits a finished film: the statements, and the error bars of all pixels.
     void audit(const aglow::film<S>& film, const time_budget& budget, render_result& result) {
+        try {
+            audit_whole(film, budget, result);
+        } catch (const interrupted&) { result.notes.push_back("interrupted: the picture is not audited"); }
+    }
+
+private:
+    void audit_whole(const aglow::film<S>& film, const time_budget& budget, render_result& result) {
         const double begun = budget.spent();
-        const audited_film numbers{film, features(),
-                                   aglow::caustic_light(scene_, lights_, eye(), options_.width, options_.height,
-                                                        {.seed = options_.seed}, run_)};
+        const classified_film numbers{film, features(),
+                                      aglow::caustic_light(scene_, lights_, eye(), options_.width, options_.height,
+                                                           {.seed = options_.seed}, probing_)};
         aglow::audit_options o{
             .target = options_.until > 0 ? options_.until : 0.05, .seed = options_.seed, .stream = 1};
         o.budget = options_.error_samples.value_or(o.budget);
         const aglow::audit_result stated =
-            with_probe([&](const auto& probe) { return aglow::audit(numbers.view(), probe, o, run_); });
+            with_probe([&](const auto& probe) { return aglow::audit(numbers.view(), probe, o, probing_); });
         result.phases.push_back({"audit", budget.spent() - begun});
         if (options_.until == 0) { note(stated, result); }
         const std::vector<double> bars = aglow::error_bars(numbers.view(), stated);
@@ -91,7 +104,6 @@ public:
         result.layers.push_back({"error_bar", std::move(layer)});
     }
 
-private:
     [[nodiscard]] auto eye() const {
         return [this](const vec2<T>& film) { return view_.through(film, options_.width, options_.height); };
     }
@@ -126,12 +138,13 @@ private:
                static_cast<double>(options_.width * options_.height);
     }
 
-    static void tell(const aglow::until_result& reached, render_result& result) {
+    static void tell(const aglow::until_result& reached, const time_budget& budget, render_result& result) {
         if (reached.status == aglow::until_status::unreachable) {
             result.notes.push_back("the error cannot be reached with these settings: more samples will not do");
         }
         if (reached.status == aglow::until_status::cancelled) {
-            result.notes.push_back("the time was over before the error could be certified");
+            result.notes.push_back(budget.ended() ? "interrupted before the error could be certified"
+                                                  : "the time was over before the error could be certified");
         } else if (reached.claims > 0 || reached.status == aglow::until_status::broken) {
             note(reached.certificate, result);
         } else if (!reached.checks.empty()) {
@@ -151,6 +164,7 @@ private:
     camera<T> view_;
     const render_options& options_;
     const aglow::own_threads& run_;
+    interruptible<aglow::own_threads> probing_{run_};  ///< of what is not kept in part
     std::optional<probe_paths<World>> judge_{};
 };
 

@@ -3,8 +3,10 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <new>
 
 #include "common/counted_scene.hpp"
+#include "common/interruption.hpp"
 #include "common/scenes/registry.hpp"
 #include "render/options.hpp"
 #include "render/scenes.hpp"
@@ -70,6 +72,7 @@ int run(int count, const char* const* words) {
         return 0;
     }
     expect_writable(options->output);
+    const host::interruption listening;
     host::render_result result = render(*options);
     result.notes.insert(result.notes.begin(), options->unused.begin(), options->unused.end());
     result.add_fact("rays", host::ray_count::all_nearest());
@@ -77,7 +80,7 @@ int run(int count, const char* const* words) {
     result.add_bytes("memory at most", host::peak_memory());
     write(*options, result);
     host::print_table(result);
-    return 0;
+    return host::interruption::came() ? 130 : 0;  // as shells say it of a program that Ctrl-C ended
 }
 
 }  // namespace
@@ -88,6 +91,9 @@ int main(int count, char** words) {
     } catch (const host::usage_error& e) {
         std::fprintf(stderr, "render: %s\n", e.what());
         return 2;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "render: not enough memory; a smaller --size or fewer photons need less\n");
+        return 1;
     } catch (const std::exception& e) {
         std::fprintf(stderr, "render: %s\n", e.what());
         return 1;

@@ -223,7 +223,10 @@ std::optional<render_options> read_options(int count, const char* const* words) 
   render cornell-diffuse --until 5% --error
   render model.glb --size 640x480 --exposure 2
 
-Status 0: a picture was written. 1: it failed on the way. 2: the wish makes no sense, or the file cannot be read.)");
+Ctrl-C ends the pass that is under way, and what is there is written; a second one ends at once.
+
+Status 0: a picture was written. 1: it failed on the way. 2: the wish makes no sense, or the file cannot be read.
+130: interrupted, and what was there was written.)");
     add_picture(app, o, size);
     add_method(app, o, how);
     add_questions(app, o, show, until);

@@ -16,20 +16,24 @@
 
 namespace host {
 
-/// The seconds of a whole job.
+/// The seconds of a whole job, and whether it was told to come to an end before.
 class time_budget {
 public:
-    /// `seconds` in all, 0 for as many as it takes; `spent` tells how many have passed since the job began.
-    time_budget(double seconds, std::function<double()> spent) : seconds_{seconds}, spent_{std::move(spent)} {}
+    /// `seconds` in all, 0 for as many as it takes; `spent` tells how many have passed since the job began, `ended`
+    /// whether it is to go on no longer.
+    time_budget(
+        double seconds, std::function<double()> spent, std::function<bool()> ended = [] { return false; })
+        : seconds_{seconds}, spent_{std::move(spent)}, ended_{std::move(ended)} {}
 
     [[nodiscard]] bool limited() const { return seconds_ > 0; }
     [[nodiscard]] double seconds() const { return seconds_; }
     [[nodiscard]] double spent() const { return spent_(); }
-    [[nodiscard]] bool is_over() const { return limited() && spent() >= seconds_; }
+    [[nodiscard]] bool ended() const { return ended_(); }
+    [[nodiscard]] bool is_over() const { return ended() || (limited() && spent() >= seconds_); }
 
     /// Whether a phase may go on. Four tenths at least are the picture's, and each phase leaves something to the next.
     [[nodiscard]] bool allows(aglow::preparation_phase phase) const {
-        return !limited() || spent() < seconds_ * end_of(phase);
+        return !ended() && (!limited() || spent() < seconds_ * end_of(phase));
     }
 
 private:
@@ -45,6 +49,7 @@ private:
 
     double seconds_;
     std::function<double()> spent_;
+    std::function<bool()> ended_;
 };
 
 /// Listens to an integrator's preparation: draws bars, notes the seconds of each phase, and cuts phases short that
@@ -84,8 +89,9 @@ private:
     }
     void note(const aglow::preparation& now) {
         cut_ = now.phase;
-        char cut[64];
-        std::snprintf(cut, sizeof cut, ": cut short after %.0f %%, to leave time for the picture", 100 * now.share);
+        char cut[80];
+        std::snprintf(cut, sizeof cut, ": cut short after %.0f %%, %s", 100 * now.share,
+                      budget_.ended() ? "interrupted" : "to leave time for the picture");
         notes_.push_back(name_of(now.phase) + cut);
     }
 

@@ -19,6 +19,7 @@
 #include "common/camera.hpp"
 #include "common/developed.hpp"
 #include "common/drawing.hpp"
+#include "common/interruption.hpp"
 #include "common/light_set.hpp"
 #include "common/probe_paths.hpp"
 #include "common/progress.hpp"
@@ -46,7 +47,7 @@ public:
           view_{view},
           options_{options},
           run_{threads(options)},
-          budget_{options.seconds, [begun = options.begun] { return since(begun); }},
+          budget_{options.seconds, [begun = options.begun] { return since(begun); }, &interruption::came},
           settings_{options_},
           certifier_{scene, lights, view, options_, run_} {}
 
@@ -70,6 +71,7 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
+    static constexpr double patience = 5;  // seconds of a pass
 
     static aglow::own_threads threads(const render_options& o) {
         return o.threads == 0 ? aglow::own_threads{} : aglow::own_threads{o.threads};
@@ -155,6 +157,7 @@ private:
             options_.until > 0 ? until(integrator, lookups_a_sample(maps, cache)) : expose("picture", integrator, true);
         result_.layers.insert(result_.layers.begin(), {"", all});
         if (!options_.layers) { return; }
+        if (budget_.ended()) { return result_.notes.push_back("interrupted: the layers are left out"); }
         show("direct", direct());
         if (maps) { show("caustic", caustic(maps)); }
         show("indirect", indirect(all, maps));
@@ -165,7 +168,7 @@ private:
         std::vector<picture> halves;
         for (const char* name : {"first half", "second half"}) {
             end_ = budget_.spent() + (budget_.seconds() - budget_.spent()) / (halves.empty() ? 2 : 1);
-            taken_ = 0;
+            if (!budget_.ended()) { taken_ = 0; }  // else the second gets as many samples as the first
             halves.push_back(expose(name, tracer));
             ++options_.seed;
         }
@@ -199,6 +202,7 @@ private:
             } while (!done(film.samples(), since(begun)));
         }
         result_.phases.push_back({name, since(begun)});
+        note_interruption(name, film.samples());
         if (taken_ == 0) { result_.add_fact("samples a pixel", film.samples()); }
         taken_ = film.samples();
         if (film.dropped() > 0) { result_.add_fact(name + ", samples dropped", film.dropped()); }
@@ -230,16 +234,24 @@ private:
     [[nodiscard]] std::uint32_t wanted() const { return taken_ > 0 ? taken_ : options_.samples; }
     [[nodiscard]] bool timed() const { return budget_.limited() && taken_ == 0; }
 
-    /// Doubles while time allows, then what fits.
+    void note_interruption(const std::string& name, std::uint32_t taken) {
+        if (!budget_.ended() || taken_ > 0 || (!timed() && taken >= wanted())) { return; }
+        const std::string of = timed() ? "" : " of " + std::to_string(wanted());
+        result_.notes.push_back(name + ": interrupted after " + std::to_string(taken) + of + " samples a pixel");
+    }
+
+    /// Samples of the next pass, which is not interrupted: doubling, but so few that nobody waits long for its end, and
+    /// no more than the time allows.
     [[nodiscard]] std::uint32_t next_samples(std::uint32_t taken, double spent) const {
-        if (!timed()) { return wanted(); }
-        if (taken == 0) { return 1; }
-        const double left = end_ - budget_.spent();
-        const double fit = left * static_cast<double>(taken) / spent;
-        return std::max(1u, std::min(taken, static_cast<std::uint32_t>(std::max(0.0, fit))));
+        const std::uint32_t most = timed() ? ~0u : wanted() - taken;
+        if (taken == 0) { return std::min(most, timed() ? 1u : 4u); }
+        const double left = timed() ? std::clamp(end_ - budget_.spent(), 0.0, patience) : patience;
+        const double fit = std::min(static_cast<double>(taken), left * static_cast<double>(taken) / spent);
+        return std::min(most, std::max(1u, static_cast<std::uint32_t>(fit)));
     }
     [[nodiscard]] bool done(std::uint32_t taken, double spent) const {
-        if (!timed()) { return true; }
+        if (budget_.ended() && taken_ == 0) { return true; }
+        if (!timed()) { return taken >= wanted(); }
         return taken >= (1u << 24) || budget_.spent() + spent / static_cast<double>(taken) > end_;
     }
 

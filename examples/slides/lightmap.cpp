@@ -150,15 +150,14 @@ int main(int count, char** words) {
         film.expose(eye, bake, {.samples = s.tiny() ? 1u : 16u}, s.run());
         const double baked = clock.seconds();
 
-        const host::audited_film seen{film};
         const aglow::path_tracer truth{scene, scene.lights()};
-        const auto said = aglow::audit(seen.view(), aglow::pixel_probe{eye, truth, s.side()}, {}, s.run());
+        const auto said = aglow::audit(film, aglow::pixel_probe{eye, truth, s.side()}, {}, s.run());
         std::printf("baked in %.2f s, audited in %.2f s: off by %.2f %%, at most %.2f %%, in the mean\n", baked,
                     clock.seconds() - baked, 100 * said.likely_error, 100 * said.mean_error_bound);
 
         const host::picture light = host::developed(film);
         host::picture irradiance = light;
-        std::vector<double> bars = aglow::error_bars(seen.view(), said);
+        std::vector<double> bars = aglow::error_bars(film, said);
         for (std::size_t i = 0; i < light.pixels.size(); ++i) {
             irradiance.pixels[i] *= map.irradiance_per_radiance(i);
             if (!map.at(i)) { bars[i] = 0; }

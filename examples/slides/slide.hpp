@@ -3,6 +3,7 @@
 // Called as `slide_x FOLDER [--tiny]`; the folder must be there. --tiny makes a thumbnail in a moment.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -106,9 +107,15 @@ template <typename... Values>
 /// The `main` of a slide: reads the arguments, says in one line what went wrong.
 template <typename Draw>
 int show_slide(int count, char** words, Draw&& draw) {
-    const bool tiny = count == 3 && std::string_view{words[2]} == "--tiny";
-    if (count != 2 && !tiny) {
-        std::fprintf(stderr, "usage: %s FOLDER [--tiny]\n", words[0]);
+    const std::vector<std::string_view> asked(words + 1, words + count);
+    const bool help = std::any_of(asked.begin(), asked.end(), [](auto w) { return w == "--help" || w == "-h"; });
+    const bool tiny = asked.size() == 2 && asked[1] == "--tiny";
+    if (help || asked.empty() || asked[0].starts_with('-') || (asked.size() > 1 && !tiny)) {
+        std::fprintf(help ? stdout : stderr, "usage: %s FOLDER [--tiny]\n", words[0]);
+        return help ? 0 : 2;
+    }
+    if (!std::filesystem::is_directory(words[1])) {  // better now than after minutes
+        std::fprintf(stderr, "%s: %s is no folder\n", words[0], words[1]);
         return 2;
     }
     try {

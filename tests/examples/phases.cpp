@@ -86,3 +86,20 @@ TEST_CASE("phases: four tenths of the time at least are the picture's") {
     s.now = 10;
     CHECK(budget.is_over());
 }
+
+TEST_CASE("phases: what is told to end is over, lets no phase go on, and says that it was interrupted") {
+    stage s;
+    bool ended = false;
+    const host::time_budget budget{0, [&] { return s.now; }, [&] { return ended; }};
+    host::phase_watch watch{budget, s.out.get()};
+    CHECK(watch({phase::photons, 0.2}));
+    CHECK_FALSE(budget.is_over());
+    ended = true;
+    CHECK(budget.is_over());
+    CHECK_FALSE(watch({phase::photons, 0.3}));
+    CHECK_FALSE(watch({phase::irradiance, 0}));
+    host::render_result result;
+    watch.finish(result);
+    REQUIRE(result.notes.size() == 2);
+    CHECK(result.notes[0] == "photons: cut short after 30 %, interrupted");
+}

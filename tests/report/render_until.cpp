@@ -191,6 +191,29 @@ TEST_CASE("render_until: a picture without any error, looked at without noise, i
     CHECK(result.certificate.mean_error_bound == 0);
 }
 
+TEST_CASE("render_until: a picture of one pixel that rare samples make is not given up") {
+    // One sample in 40 is 40 times as bright: a small lamp in a pixel that shows all of a room.
+    const auto sample = [](std::uint64_t seed) { return unit_interval<double>(mix(seed)) < 1.0 / 40 ? 40.0 : 0.025; };
+    const auto mean_of_samples = [&](std::uint64_t seed, std::size_t count) {
+        double sum = 0;
+        for (std::size_t i = 0; i < count; ++i) { sum += sample(mix(seed, i)); }
+        return sum / static_cast<double>(count);
+    };
+    const auto probe = [&](std::size_t, std::uint64_t seed, std::size_t count) { return mean_of_samples(seed, count); };
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        double pixel = 0;
+        const auto advance = [&](double work) {
+            pixel = mean_of_samples(mix(seed, 77), static_cast<std::size_t>(work));
+            return audited_picture<double>{.image = {{&pixel, 1}, 1, 1, 1}};
+        };
+        render_until_options o = options(seed);
+        o.audit.target = 0.3;
+        const until_result result = render_until(advance, probe, o);
+        CAPTURE(seed, result.work);
+        CHECK(result.status == until_status::reached);
+    }
+}
+
 TEST_CASE("render_until: wrong settings are refused by name") {
     renderer render{0, 1, 0.5, 1};
     render_until_options o = options(1);

@@ -33,6 +33,7 @@ public:
         } else {
             draw(picture, probe, run);
         }
+        pixels_ = picture.image.pixels();
         add(seen(work));
         while (unclear() && noise_ > options_.least_noise && may_be_sharper() && affordable(work)) {
             sharpen(std::max(noise_ / 2, options_.least_noise), picture, probe, work, run);
@@ -97,7 +98,9 @@ public:
 
     /// Whether the measurements exclude every floor at or below the target. All are made by the same probes.
     [[nodiscard]] bool hopeless() const {
-        const double doubt = checks_.back().error_deviation / checks_.back().error;
+        // What few pixels are off by is chance itself, whatever the probes know of it: it need not fall evenly.
+        const double doubt = std::hypot(checks_.back().error_deviation / checks_.back().error,
+                                        1 / std::sqrt(static_cast<double>(pixels_)));
         return distinct_ >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
     }
 
@@ -234,6 +237,7 @@ private:
     std::vector<until_check> checks_{};
     std::vector<measured_error> checks_for_fit_{};
     std::size_t distinct_{0};
+    std::size_t pixels_{1};
     std::optional<audit_sample<T>> sample_{};
     double noise_;       // of the probes, as a share of the target
     double own_{0};      // mean size of that
