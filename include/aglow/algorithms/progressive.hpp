@@ -23,6 +23,7 @@ namespace aglow {
 /// Squared radius of pass `i` (from 1) over that of the first, for shrinking by `alpha` in (0, 1): the closed form of
 /// r²(i+1) / r²(i) = (i + alpha) / (i + 1) (Knaus & Zwicker 2011, (20)), which no product of passes can wear down.
 [[nodiscard]] inline double radius2_share(double i, double alpha) {
+    if (!(i > 1)) { return 1; }  // exactly, whatever the compiler makes of the differences
     return std::exp(log_gamma(i + alpha) - log_gamma(1 + alpha) - log_gamma(i + 1));
 }
 
