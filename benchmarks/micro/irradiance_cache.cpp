@@ -1,5 +1,4 @@
 // Irradiance records: how long one takes to be worked out from its hemisphere, inserted, and looked up.
-#include <span>
 #include <vector>
 
 #include <aglow/estimators/irradiance_cache.hpp>
@@ -100,22 +99,12 @@ void look_up_frozen(benchmark::State& state, bool coherent) {
 
 /// An item is a lookup, of 1,024 in step.
 void look_up_in_step(benchmark::State& state, bool coherent) {
-    constexpr std::size_t batch = 1024;
+    using answer = aglow::irradiance_answer<rgb, float>;
     const cache::frozen& from = frozen_of(state.range(0));
-    const std::span<const wall_place> all{micro::wall_questions(coherent)};
-    std::vector<aglow::irradiance_answer<rgb, float>> answers(batch);
-    std::size_t first = 0;
-    std::uint64_t blended = 0;
-    for (auto _ : state) {
-        from.lookup_each(all.subspan(first, batch), std::span{answers});
-        benchmark::DoNotOptimize(answers.data());
-        blended += answers.front().records;
-        first = (first + batch) % all.size();
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch));
-    state.SetComplexityN(state.range(0));
+    micro::ask_at_once<answer>(
+        state, coherent, [&](auto places, auto answers) { from.lookup_each(places, answers); }, "records",
+        [](const answer& a) { return a.records; });
     micro::count_bytes(state, from.bytes(), from.size());
-    state.counters["records"] = static_cast<double>(blended) / static_cast<double>(state.iterations());
 }
 
 const bool asked = [] {

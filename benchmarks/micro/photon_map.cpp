@@ -1,5 +1,4 @@
 // Photon maps and irradiance points: how long one estimate takes over the number of photons.
-#include <span>
 #include <vector>
 
 #include <aglow/core/parallel.hpp>
@@ -84,22 +83,12 @@ void estimate(benchmark::State& state, aglow::density_options options, bool cohe
 /// An item is an estimate, of 1,024 asked for at once.
 template <typename Map>
 void estimates(benchmark::State& state, aglow::density_options options, bool coherent) {
-    constexpr std::size_t batch = 1024;
+    using estimate = aglow::density_estimate<rgb, float>;
     const Map& map = map_of<Map>(state.range(0));
-    const std::span<const wall_place> all{micro::wall_questions(coherent)};
-    std::vector<aglow::density_estimate<rgb, float>> found(batch);
-    std::size_t first = 0;
-    std::uint64_t used = 0;
-    for (auto _ : state) {
-        map.irradiance_each(all.subspan(first, batch), std::span{found}, options);
-        benchmark::DoNotOptimize(found.data());
-        used += found.front().count;
-        first = (first + batch) % all.size();
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch));
-    state.SetComplexityN(state.range(0));
+    micro::ask_at_once<estimate>(
+        state, coherent, [&](auto places, auto found) { map.irradiance_each(places, found, options); }, "photons",
+        [](const estimate& e) { return e.count; });
     micro::count_bytes(state, map.memory(), map.size());
-    state.counters["photons"] = static_cast<double>(used) / static_cast<double>(state.iterations());
 }
 
 void read_point(benchmark::State& state, bool coherent) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -122,6 +123,26 @@ inline const std::vector<wall_place>& wall_questions(bool coherent) {
 /// The radius within which `wanted` of `count` places on the walls lie.
 inline float wall_radius(double wanted, std::size_t count) {
     return static_cast<float>(std::sqrt(6 * wanted / (aglow::pi<double> * static_cast<double>(count))));
+}
+
+/// Asks `ask(questions, answers)` 1,024 questions at once, again and again, and counts each as an item. Keeps the mean
+/// of `used(answer)`, of the first of each batch, beside its times as `what`.
+template <typename Answer, typename Ask, typename Used>
+void ask_at_once(benchmark::State& state, bool coherent, const Ask& ask, const char* what, const Used& used) {
+    constexpr std::size_t batch = 1024;
+    const std::span<const wall_place> all{wall_questions(coherent)};
+    std::vector<Answer> answers(batch);
+    std::size_t first = 0;
+    std::uint64_t sum = 0;
+    for (auto _ : state) {
+        ask(all.subspan(first, batch), std::span{answers});
+        benchmark::DoNotOptimize(answers.data());
+        sum += used(answers.front());
+        first = (first + batch) % all.size();
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch));
+    state.SetComplexityN(state.range(0));
+    state.counters[what] = static_cast<double>(sum) / static_cast<double>(state.iterations());
 }
 
 }  // namespace micro

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -15,6 +16,23 @@ namespace {
 image_view<float> seen(const std::vector<float>& values, std::size_t channels = 1) {
     return {values, values.size() / channels, 1, channels};
 }
+image_view<double> row(const std::vector<double>& values) { return {values, values.size(), 1, 1}; }
+
+/// A picture that is off by 0.01 of normal law, the truth, and two halves of a reference, off by `noise` each.
+struct halved {
+    static constexpr int n = 40'000;
+    std::vector<double> image{}, truth{}, first{}, second{};
+
+    halved(std::uint64_t seed, double noise) {
+        random_sampler<double> random{seed};
+        for (int i = 0; i < n; ++i) {
+            truth.push_back(0.5 + random.next_1d());
+            image.push_back(truth.back() + 0.01 * synthetic::normal(random));
+            first.push_back(truth.back() + noise * synthetic::normal(random));
+            second.push_back(truth.back() + noise * synthetic::normal(random));
+        }
+    }
+};
 
 }  // namespace
 
@@ -81,40 +99,22 @@ TEST_CASE("image_error: one firefly in a thousand values is all of relMSE and no
 }
 
 TEST_CASE("image_error: two halves take their own noise out of the squared error") {
-    std::vector<double> image, truth, first, second;
-    random_sampler<double> random{9};
-    const int n = 40'000;
-    for (int i = 0; i < n; ++i) {
-        truth.push_back(0.5 + random.next_1d());
-        image.push_back(truth.back() + 0.01 * synthetic::normal(random));
-        first.push_back(truth.back() + 0.1 * synthetic::normal(random));
-        second.push_back(truth.back() + 0.1 * synthetic::normal(random));
-    }
-    const auto view = [&](const std::vector<double>& v) { return image_view<double>{v, v.size(), 1, 1}; };
-    const image_error exact = compare(view(image), view(truth));
-    const image_error halves = compare(view(image), view(first), view(second));
-    const image_error plain = compare(view(image), view(first));
+    const halved h{9, 0.1};
+    const image_error exact = compare(row(h.image), row(h.truth));
+    const image_error halves = compare(row(h.image), row(h.first), row(h.second));
+    const image_error plain = compare(row(h.image), row(h.first));
     // The product's standard deviation is about 0.1 · 0.1.
-    CHECK(std::abs(halves.mse - exact.mse) < 4 * 0.0102 / std::sqrt(n));
+    CHECK(std::abs(halves.mse - exact.mse) < 4 * 0.0102 / std::sqrt(halved::n));
     CHECK(plain.mse > 50 * exact.mse);
     CHECK(halves.reference_relmse == Approx(0.005 * (exact.relmse / exact.mse)).epsilon(0.05));
 }
 
 TEST_CASE("image_error: two halves take their own noise out of relMSE, and their mean is the truth of all else") {
-    std::vector<double> image, truth, first, second;
-    random_sampler<double> random{10};
-    const int n = 40'000;
-    for (int i = 0; i < n; ++i) {
-        truth.push_back(0.5 + random.next_1d());
-        image.push_back(truth.back() + 0.01 * synthetic::normal(random));
-        first.push_back(truth.back() + 0.02 * synthetic::normal(random));
-        second.push_back(truth.back() + 0.02 * synthetic::normal(random));
-    }
-    const auto view = [&](const std::vector<double>& v) { return image_view<double>{v, v.size(), 1, 1}; };
-    const image_error exact = compare(view(image), view(truth));
-    const image_error halves = compare(view(image), view(first), view(second));
+    const halved h{10, 0.02};
+    const image_error exact = compare(row(h.image), row(h.truth));
+    const image_error halves = compare(row(h.image), row(h.first), row(h.second));
     // A term's standard deviation is about 0.0005, over squares of 0.5 to 1.5.
-    CHECK(std::abs(halves.relmse - exact.relmse) < 4 * 0.0009 / std::sqrt(n));
+    CHECK(std::abs(halves.relmse - exact.relmse) < 4 * 0.0009 / std::sqrt(halved::n));
     const image_error one = compare(seen({3}), seen({1}), seen({3}));
     CHECK(one.mape == Approx(1 / (2 + 0.02 * 2)));
     CHECK(one.reference_mape == Approx(1 / (2 + 0.02 * 2)));

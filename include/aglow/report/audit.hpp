@@ -20,7 +20,6 @@
 #include <aglow/report/confidence.hpp>
 #include <aglow/report/image_view.hpp>
 #include <aglow/report/probe.hpp>
-#include <aglow/report/tails.hpp>
 
 namespace aglow {
 
