@@ -128,6 +128,7 @@
 #include <aglow/algorithms/preparation.hpp>
 #include <aglow/algorithms/progressive.hpp>
 #include <aglow/algorithms/seen_irradiance.hpp>
+#include <aglow/algorithms/spaced_places.hpp>
 #include <aglow/algorithms/stiffness.hpp>
 #include <aglow/algorithms/trace_photons.hpp>
 
