@@ -118,6 +118,7 @@
 #include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/algorithms/photon_demand.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/algorithms/photon_options.hpp>
 #include <aglow/algorithms/photon_source.hpp>

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include <aglow/algorithms/photon_demand.hpp>
 #include <aglow/algorithms/photon_options.hpp>
 #include <aglow/algorithms/photon_walk.hpp>
 #include <aglow/core/halton.hpp>
@@ -57,7 +58,12 @@ class photon_tracer {
 
 public:
     photon_tracer(const World& scene, const Lights& lights, const photon_options& options, const Run& run)
-        : scene_{scene}, lights_{lights}, options_{options}, run_{run}, most_bounces_{options.most_bounces} {
+        : scene_{scene},
+          lights_{lights},
+          options_{options},
+          run_{run},
+          demand_{options},
+          most_bounces_{options.most_bounces} {
         if (options.pilot_paths == 0) { throw std::invalid_argument("photon_options.pilot_paths must not be 0"); }
     }
 
@@ -123,45 +129,10 @@ private:
         if (unknown == kinds{}) { return; }
         const kinds found = pilot(unknown);
         for (std::size_t kind = 0; kind < 4; ++kind) {
-            if (unknown[kind] != 0) { paths_[kind] = paths_worth(kind, found[kind]); }
+            if (unknown[kind] == 0) { continue; }
+            share_[kind] = demand_.share_of_light(static_cast<photon_history>(kind));
+            paths_[kind] = demand_.paths_worth(wanted_[kind], found[kind], share_[kind]);
         }
-    }
-
-    /// Paths for the photons that are wanted of a kind, where the pilot's paths would have stored `found`: fewer where
-    /// their share of the light is so small that the noise of them all is no more than what full maps bring elsewhere,
-    /// but as many as are walked in search of what the pilot did not find.
-    [[nodiscard]] std::size_t paths_worth(std::size_t kind, std::size_t found) {
-        const double wanted = static_cast<double>(wanted_[kind]);
-        const std::size_t all = paths_needed(wanted, found);
-        share_[kind] = share_of_light(kind);
-        if (!is_spared(kind)) { return all; }
-        // Noise of all light: share / sqrt(photons).
-        const double enough = wanted * square(share_[kind] / options_.full_share);
-        return std::min(all, std::max(paths_needed(enough, found), paths_needed(wanted, 0)));
-    }
-
-    /// Whether light of a kind was met, and so little that it need not be sought for long.
-    [[nodiscard]] bool is_spared(std::size_t kind) const {
-        return share_[kind] > 0 && share_[kind] < options_.full_share;
-    }
-
-    /// The share of light once more reflected in itself and the light that it comes from, by the pilot; 1 for other.
-    [[nodiscard]] double share_of_light(std::size_t kind) const {
-        double from = 0;
-        if (kind == index(photon_history::reflected)) { from = met_[index(photon_history::caustic)]; }
-        if (kind == index(photon_history::indirect)) {
-            from = met_[index(photon_history::direct)] + met_[index(photon_history::caustic)];
-        }
-        return from > 0 ? met_[kind] / (from + met_[kind]) : 1;
-    }
-
-    /// Paths for `wanted` photons, where the pilot's paths would have stored `found`.
-    [[nodiscard]] std::size_t paths_needed(double wanted, std::size_t found) const {
-        const double pilots = static_cast<double>(options_.pilot_paths);
-        const double most = static_cast<double>(options_.most_paths);
-        const double hard = endless_ ? pilots : 32 * pilots;
-        const double needed = found == 0 ? hard : std::ceil(wanted * pilots / static_cast<double>(found));
-        return static_cast<std::size_t>(std::min(needed, most));
     }
 
     /// How many photons of each kind the pilot's paths would have stored. Paths that do not end within sight are cut
@@ -177,11 +148,11 @@ private:
             ledger += block.ledger;
             for (std::size_t kind = 0; kind < 4; ++kind) {
                 found[kind] += block.counts[kind];
-                met_[kind] += block.met[kind];
+                demand_.met[kind] += block.met[kind];
             }
         }
-        endless_ = options_.most_bounces == 0 && 2 * ledger.capped > ledger.emitted;
-        if (!endless_) { most_bounces_ = options_.most_bounces; }
+        demand_.endless = options_.most_bounces == 0 && 2 * ledger.capped > ledger.emitted;
+        if (!demand_.endless) { most_bounces_ = options_.most_bounces; }
         return found;
     }
 
@@ -287,7 +258,7 @@ private:
         const double missing = static_cast<double>(map.wanted) - static_cast<double>(map.size());
         const double expected = static_cast<double>(map.wanted);
         if (missing > expected / 10 + 4 * std::sqrt(expected)) {
-            const bool spared = is_spared(index(kind)) && map.paths < options_.most_paths;
+            const bool spared = demand_.is_spared(share_[index(kind)]) && map.paths < options_.most_paths;
             return tell(map_status::partly, "partly filled, " + (spared ? rarity(kind) : "all " + paths + " used up"));
         }
         tell(map_status::full, "full");
@@ -305,12 +276,11 @@ private:
     const Run& run_;
     kinds wanted_{};
     kinds paths_{};
-    std::array<double, 4> met_{};              ///< by the pilot: power that landed, wanted or not
-    std::array<double, 4> share_{1, 1, 1, 1};  ///< see `share_of_light`
+    photon_demand demand_;
+    std::array<double, 4> share_{1, 1, 1, 1};  ///< of the light, of maps that a pilot was asked about
     std::array<std::string, 4> why_{};
     std::uint32_t most_bounces_;
     bool piloting_{false};
-    bool endless_{false};
     std::atomic<bool> stopped_{false};
 };
 
