@@ -115,6 +115,7 @@
 #include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layered_integrator.hpp>
 #include <aglow/algorithms/layers.hpp>
+#include <aglow/algorithms/path_emission.hpp>
 #include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/path_walk.hpp>

@@ -148,3 +148,26 @@ TEST_CASE("caustic light: below the glass sphere of the box, and nowhere in the 
     CHECK(lit > light.size() / 100);
     CHECK(lit < light.size() / 4);
 }
+
+TEST_CASE("a large picture's caustics are those of a small one, block by block") {
+    const host::scene<float> scene{*host::scenes::find<float>("cornell-glass")};
+    const auto caustics = [&](std::size_t width, std::size_t height, std::size_t blocks) {
+        const auto eye = [&, width, height](const aglow::vec2<float>& film) {
+            REQUIRE((film.x <= static_cast<float>(width) && film.y <= static_cast<float>(height)));
+            return scene.view().through(film, width, height);
+        };
+        return aglow::caustic_light(scene, scene.lights(), eye, width, height, {.blocks = blocks});
+    };
+    constexpr std::size_t side = 64;
+    const std::vector<float> small = caustics(side / 4, side / 4, 0);
+    const std::vector<float> large = caustics(side, side, side * side / 16);
+    REQUIRE(large.size() == side * side);
+    for (std::size_t i = 0; i < large.size(); ++i) {
+        REQUIRE(large[i] == small[i / side / 4 * (side / 4) + i % side / 4]);
+    }
+    CHECK(*std::max_element(small.begin(), small.end()) > 0);
+    // Blocks that do not divide the picture end at its edge.
+    const std::vector<float> odd = caustics(50, 30, 100);
+    REQUIRE(odd.size() == 50 * 30);
+    for (std::size_t i = 0; i < odd.size(); ++i) { REQUIRE(odd[i] == odd[i / 50 / 4 * 4 * 50 + i % 50 / 4 * 4]); }
+}
