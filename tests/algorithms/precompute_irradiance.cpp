@@ -60,6 +60,17 @@ TEST_CASE("precompute_irradiance: in a matte sphere all light is P / (4 pi R2 (1
     }
 }
 
+TEST_CASE("precompute_irradiance: points at every photon, or at every other, are no brighter than they should be") {
+    const auto scene = sphere(0.5f);
+    const auto maps = trace_photons(scene, lamp, {.direct = 20000, .indirect = 40000});
+    for (const std::size_t every : {1u, 2u, 3u}) {
+        const auto [value, error] = readings(precompute_irradiance(scene, lamp, maps, {.every = every}));
+        CAPTURE(every);
+        // Of two or one in k = 50 photons more or less.
+        CHECK(value.mean() == Approx(1.0 / 4 / (1 - 0.5)).epsilon(0.03));
+    }
+}
+
 TEST_CASE("precompute_irradiance: 1, 2, 3 and 8 threads and any executor know the same") {
     const auto room = support::room_with_balls<S, float>({0.7f, 0.5f, 0.3f}, {10, 12, 14});
     const auto maps = trace_photons(room.scene, room.light, {.direct = 1000, .caustic = 1000, .indirect = 2000});

@@ -10,6 +10,7 @@
 #include <random>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -35,6 +36,12 @@ std::vector<vec3<T>> cloud(const std::string& shape, std::size_t count, T scale 
         if (shape == "one point") { p = {T(0.5), T(-0.25), T(3)}; }
         if (shape == "repeated") { p = stock[random() % stock.size()]; }
         if (shape == "lattice") { p = {T(random() % 9), T(random() % 9), T(random() % 9)}; }
+        for (const int axis : {0, 1, 2}) {  // a crowd at each of a few places in a row
+            const std::string_view name{&"xyz"[axis], 1};
+            if (shape != std::string{"row along "}.append(name)) { continue; }
+            p = {T(0.5), T(0.5), T(0.5)};
+            p[axis] = T(random() % 4) / 4;
+        }
         if (shape == "walls" && i % 5 != 0) { p[static_cast<int>(random() % 3)] = T(random() % 2); }
         if (shape == "walls" && i % 5 == 0) { p = p * T(0.01) + vec3<T>(T(0.5), T(0.5), 0); }
         if (shape == "clusters") { p = stock[i % 5] + p * T(1e-4); }
@@ -43,8 +50,8 @@ std::vector<vec3<T>> cloud(const std::string& shape, std::size_t count, T scale 
     return points;
 }
 
-const std::vector<std::string> shapes{"cube",     "plane",   "tilted plane", "line",    "one point",
-                                      "repeated", "lattice", "walls",        "clusters"};
+const std::vector<std::string> shapes{"cube",    "plane", "tilted plane", "line",        "one point",   "repeated",
+                                      "lattice", "walls", "clusters",     "row along x", "row along y", "row along z"};
 const std::vector<std::size_t> sizes{1, 2, 15, 16, 17, 31, 32, 33, 63, 64, 65, 100, 511, 512, 513, 1500, 8193, 9000};
 
 /// Queries among the points, on them, beside them and far away.

@@ -123,8 +123,11 @@ TEST_CASE("packed_spheres: places asked about in step get what brute force finds
     for (const auto& spheres : {random_spheres<float>(700, 1, 6), crowd}) {
         const packed_spheres<float> index{spheres};
         random_sampler<float> random{7};
-        std::vector<vec3<float>> places(100);
-        for (auto& p : places) { p = {random.next_1d(), random.next_1d(), random.next_1d()}; }
+        std::vector<vec3<float>> places(200);
+        for (std::size_t i = 0; i < places.size(); ++i) {  // first scattered, then some together
+            const vec3<float> p{random.next_1d(), random.next_1d(), random.next_1d()};
+            places[i] = i < 100 || i % 8 == 0 ? p : places[i - i % 8] + p * 0.001f;
+        }
         std::size_t next = 0;
         int wrong = 0;
         index.search_each(

@@ -103,18 +103,25 @@ TEMPLATE_TEST_CASE("sobol: over the seeds each point is uniform over the square"
     }
 }
 
-TEMPLATE_TEST_CASE("sobol: decisions of one pixel are as independent as random numbers", "", float, double) {
+TEMPLATE_TEST_CASE("sobol: decisions of one pixel, and draws for one, are as independent as random numbers", "", float,
+                   double) {
     using T = TestType;
     std::vector<double> counts(256);
+    std::vector<double> counts_of_one(256);
+    const auto count = [](std::vector<double>& of, T a, T b) {
+        of[static_cast<std::size_t>(a * 16) * 16 + static_cast<std::size_t>(b * 16)] += 1;
+    };
     for (std::uint64_t pixel = 0; pixel < 500; ++pixel) {
         for (std::uint32_t i = 0; i < 64; ++i) {
             const aglow::sobol_numbers<T> numbers{{1, 0, pixel}, i};
-            const T a = numbers.at(0, purpose::light).next_2d().x;
-            const T b = numbers.at(1, purpose::light).next_2d().x;
-            counts[static_cast<std::size_t>(a * 16) * 16 + static_cast<std::size_t>(b * 16)] += 1;
+            auto sampler = numbers.at(0, purpose::light);
+            const T a = sampler.next_2d().x;
+            count(counts, a, numbers.at(1, purpose::light).next_2d().x);
+            count(counts_of_one, a, sampler.next_2d().x);
         }
     }
     CHECK(statistics::chi2_uniform(counts).p > 1e-4);
+    CHECK(statistics::chi2_uniform(counts_of_one).p > 1e-4);
 }
 
 TEMPLATE_TEST_CASE("sobol: one decision is stratified over a pixel's samples, forked or not", "", float, double) {

@@ -91,6 +91,21 @@ TEST_CASE("skewed upper bound: holds where the mean rests on few large numbers, 
     CHECK(student < synthetic::least_coverage(2000));
 }
 
+TEST_CASE("skewed upper bound: solves Hall's equation, by the third standardised moment") {
+    const std::vector<double> values{0, 0, 0, 1};
+    CHECK(skewness(values) == Approx(0.75));  // (3 (-1/2)^3 + (3/2)^3) / 4
+    CHECK(skewness(std::vector<double>{1, 0, 0, 0}) == Approx(0.75));
+    CHECK(skewness(std::vector<double>{-1, 0, 1}) == Approx(0).margin(1e-15));
+    for (const double confidence : {0.6, 0.9, 0.95}) {
+        const double bound = skewed_upper_bound(values, confidence);
+        const double at = (0.25 - bound) / 0.5;
+        const double skew = 0.75;
+        // Hall 1992, (2.4): this, times the root of n, is normal for the true mean.
+        const double turned = at + skew * at * at / 3 + skew * skew * at * at * at / 27 + skew / (6 * 4);
+        CHECK(turned * 2 == Approx(-student_t_quantile(confidence, 3)));
+    }
+}
+
 TEST_CASE("cautious interval: holds on skewed and on long-tailed symmetric laws, where one of its parents does not") {
     const auto tailed = [](random_sampler<double>& random) {
         return (random.next_1d() < 0.5 ? -1 : 1) * std::exp(1.5 * synthetic::normal(random));

@@ -24,7 +24,8 @@ namespace aglow {
 
 /// How irradiance is worked out ahead.
 struct irradiance_options {
-    std::size_t every{4};          ///< a point at one in so many photons
+    std::size_t every{4};  ///< a point at one in so many photons; below 3 it counts its own photon too, and what
+                           ///< points lose at edges is neither given back nor told
     std::uint32_t shadow_rays{8};  ///< looks at the lights per point; 0 takes direct light from the direct map
     density_options density{};     ///< for the caustic and the indirect map
     std::uint64_t seed{0};
@@ -191,6 +192,9 @@ public:
         }
     }
 
+    /// Whether photons that gave their places are left out.
+    [[nodiscard]] bool leaves_out() const { return !left_out_.empty(); }
+
 private:
     [[nodiscard]] std::vector<seen> from(const photon_map<S, T>& map, std::span<const point> points) const {
         return seen_irradiance<World, S>{scene_, map, options_.density, error_, left_out_, factor_}(points);
@@ -249,7 +253,9 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
     detail::keep_filled(points, options.progress, fill, run);
     shared_error shared = detail::shared_by(parts, maps.indirect.common, maps.caustic.common);
     // A gather averages over many points, so what they lose in the mean can be given back to each. How well that is
-    // known, by half, stays.
+    // known, by half, stays. Of points that count their own photons it is not known: of half the radius, by which bias
+    // is told, such a photon makes four times as large a part.
+    if (!light.leaves_out()) { shared.bias = 0; }
     for (irradiance_point<S, T>& p : points) { p = p.times(static_cast<band_of<S>>(1 - shared.bias)); }
     shared.bias /= 2;
     return irradiance_points<S, T>{points, run, shared};

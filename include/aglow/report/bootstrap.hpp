@@ -36,8 +36,8 @@ namespace detail {
 }  // namespace detail
 
 /// Percentile interval (Efron 1979) of `statistic(indices)`, where `indices` names runs out of [0, count), some of them
-/// more than once. The estimate is the statistic of every run once. Throws `std::invalid_argument` where there is no
-/// run.
+/// more than once. The estimate is the statistic of every run once. Expects a statistic that is never NaN. Throws
+/// `std::invalid_argument` where there is no run.
 template <typename Statistic>
     requires std::is_invocable_r_v<double, const Statistic&, std::span<const std::size_t>>
 [[nodiscard]] interval bootstrap(std::size_t count, const Statistic& statistic, const bootstrap_options& options = {}) {
