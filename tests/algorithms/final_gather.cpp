@@ -8,6 +8,7 @@
 
 #include <aglow/algorithms/path_trace.hpp>
 #include <aglow/algorithms/photon_integrators.hpp>
+#include <aglow/report/running_mean.hpp>
 
 #include "support/catch.hpp"
 #include "support/furnace.hpp"
@@ -84,6 +85,21 @@ TEST_CASE("final_gather: a sky with a cosine gives two thirds, and the guess cov
     }
     CHECK(mean.agrees(1.0 / 3));
     CHECK(covered > 1900);
+}
+
+TEST_CASE("final_gather: few rays, even one, do not make the stated error small") {
+    const answers cosine{[](const ray<float>& r) { return incoming_light<S, float>{S{r.direction.z}}; }};
+    for (const std::uint32_t rays : {1u, 2u, 4u}) {
+        running_mean value;
+        running_mean error;
+        for (std::uint64_t i = 0; i < 2000; ++i) {
+            const auto e = gathered(gather_layer{cosine, {.rays = rays}}, matte, i);
+            value.add(double(e.value.x));
+            error.add(double(e.error));
+        }
+        CAPTURE(rays);
+        CHECK(error.mean() > value.deviation());
+    }
 }
 
 TEST_CASE("final_gather: rays start off the surface, on the side that they leave by") {

@@ -146,6 +146,16 @@ TEST_CASE("gloss_layer: a mirror has no spread, a lobe of f = cos round the norm
     CHECK(spread(1e5) < 1e-4f);
 }
 
+TEST_CASE("gloss_layer: of no directions one is drawn") {
+    const material<T> m{.glossy = 0.8f, .exponent = 10};
+    const toy_hit<T, T> hit{{0, 0, 0}, {0, 0, 1}, &m, 1e-6f};
+    const auto with = [&](std::uint32_t samples) {
+        return lobe_in(linear_light<T>{}, hit, vec3<T>{0, 0, 1}, 0, samples).radiance;
+    };
+    CHECK(with(1) > 0);
+    CHECK(with(0) == with(1));
+}
+
 TEST_CASE("gloss_layer: a room with a broadly glossy floor looks as path tracing says, within the stated error") {
     const auto room = glossy_room(4);
     const bounds<float> box{{-1, -1, -1}, {1, 1, 1}};

@@ -6,6 +6,7 @@
 
 #include "support/archetypes.hpp"
 #include "support/catch.hpp"
+#include "support/furnace.hpp"
 #include "support/scenes.hpp"
 #include "support/statistics.hpp"
 
@@ -68,6 +69,33 @@ TEST_CASE("precompute_irradiance: points at every photon, or at every other, are
         CAPTURE(every);
         // Of two or one in k = 50 photons more or less.
         CHECK(value.mean() == Approx(1.0 / 4 / (1 - 0.5)).epsilon(0.03));
+    }
+}
+
+TEST_CASE("precompute_irradiance: what few direct photons lose at edges is told") {
+    const testing::furnace_box<float, float> box{1, 0.5f, 1};
+    const testing::furnace_box_light<float, float> light{1, 1};  // direct light and all together: pi, 2 pi everywhere
+    for (const std::size_t photons : {2000u, 5000u}) {
+        sample_mean mean;
+        sample_mean bias;
+        for (std::uint64_t seed = 0; seed < 5; ++seed) {
+            const auto maps = trace_photons(box, light, {.direct = photons, .indirect = 50000, .seed = seed});
+            const auto points = precompute_irradiance(box, light, maps, {.shadow_rays = 0, .seed = seed});
+            sample_mean read;
+            for (std::uint32_t i = 0; i < 500; ++i) {
+                sobol_sampler<float> random{98, i};
+                const auto hit = box.intersect(ray<float>{{0, 0, 0}, uniform_sphere(random.next_2d())});
+                REQUIRE(hit);
+                const auto found = points.nearest(hit->position, -hit->normal);
+                if (found) { read.add(double(found->value)); }
+            }
+            mean.add(read.mean() / (2 * pi<double>));
+            bias.add(points.shared().bias);
+        }
+        CAPTURE(photons, mean.mean());
+        CHECK(bias.mean() < 0);
+        CHECK(std::abs(mean.mean() - 1) < std::abs(bias.mean()) + 0.01);
+        CHECK(std::abs(mean.mean() - 1) > std::abs(bias.mean()) / 4);
     }
 }
 

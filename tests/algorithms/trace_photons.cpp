@@ -424,6 +424,13 @@ TEST_CASE("trace_photons: a scene without loss is cut at a depth, and the loss i
     CHECK(maps.ledger.capped == maps.ledger.emitted);
     // 4096 roundings of a weight of one.
     CHECK(maps.ledger.power_capped.x == Approx(maps.ledger.power_emitted.x).epsilon(1e-3));
+    CHECK(maps.most_bounces == 4096);
+    // Another pass of as many paths has no pilot: it is told.
+    const auto next = trace_photons(
+        scene, lamp,
+        {.indirect = 100000, .paths = {.indirect = maps.indirect.paths}, .most_bounces = maps.most_bounces, .pass = 1});
+    CHECK(next.ledger.capped == next.ledger.emitted);
+    CHECK(trace_photons(sphere(0.5f), lamp, {.indirect = 1000}).most_bounces == 0);
 }
 
 TEST_CASE("trace_photons: geometry by a power of two scales the maps exactly") {

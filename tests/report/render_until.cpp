@@ -124,6 +124,36 @@ TEST_CASE("render_until: noise that seems heavy-tailed until probes are sharp do
     CHECK(std::exp(cost.mean()) < 400);
 }
 
+TEST_CASE("render_until: rare bright samples of the probes are not taken for an error of the picture that stays") {
+    for (std::uint64_t r = 0; r < 4; ++r) {
+        renderer render{0, 0.25, 0.5, r};
+        const auto spikes = [&](std::size_t pixel, std::uint64_t seed) {
+            return render.f.truth[pixel] * (unit_interval<double>(mix(seed)) < 0.01 ? 50.5 : 0.5);
+        };
+        render_until_options o = options(r);
+        o.first_work = 1;
+        o.probe_work = 1e-4;
+        CHECK(render_until(render, spikes, o).status != until_status::unreachable);
+    }
+}
+
+TEST_CASE("render_until: a picture too bright for good, which no claim can be made of, comes to an end") {
+    renderer render{0, 0.1, 0.5, 1};
+    const auto too_bright = [&](double work) {
+        const auto picture = render(work);
+        for (double& x : render.f.picture) { x *= 1.03; }
+        return picture;
+    };
+    render_until_options o = options(1);
+    o.most_work = std::numeric_limits<double>::infinity();
+    o.audit.bias_target = 0.01;
+    const until_result result = render_until(too_bright, render.f.probe(), o);
+    CHECK(result.status == until_status::out_of_work);
+    CHECK(result.claims > 10);
+    CHECK(result.claims < 70);
+    CHECK(is_finite(result.certificate.energy_bias.low));
+}
+
 TEST_CASE("render_until: the caller can stop it, and hears how much is left") {
     renderer render{0, 1, 0.5, 1};
     render_until_options o = options(1);

@@ -22,7 +22,7 @@ struct film_options {
     std::uint64_t seed{0};
     std::uint64_t pass{0};
     bool fresh{false};  ///< the integrator's maps are new ones: what its samples have in common is not what earlier
-                        ///< ones had, and the spread of samples tells all noise
+                        ///< ones had. Of exposures of one sample each, the spread of samples then tells all noise
     callback<double> progress{};  ///< told the share done, from any thread; false stops early
 };
 
@@ -61,7 +61,8 @@ public:
     }
 
     /// A guess of a pixel's error: the mean of what the integrator guessed, and the standard error of its samples.
-    /// Where every exposure was fresh, that error tells the maps' noise too: the bias, and twice that error.
+    /// Where every exposure was fresh and of one sample, that error tells the maps' noise too: the bias, and twice that
+    /// error.
     [[nodiscard]] B error(std::size_t x, std::size_t y) const {
         const pixel& p = pixels_[y * width_ + x];
         if (p.count == 0) { return B(0); }
@@ -109,7 +110,7 @@ public:
         double all = 0;
         for (const double row : common) { all += row; }
         (options.fresh ? common2_ : common_) += options.fresh ? square(all) : all;
-        fresh_ = options.fresh && (fresh_ || samples_ == 0);
+        fresh_ = options.fresh && options.samples == 1 && (fresh_ || samples_ == 0);
         samples_ += options.samples;
         dropped_ += dropped;
     }
@@ -166,7 +167,7 @@ private:
     std::uint64_t dropped_{0};
     double common_{0};   ///< sum of what samples have in common with all others
     double common2_{0};  ///< sum of squares of the same of fresh exposures
-    bool fresh_{false};  ///< whether every exposure was
+    bool fresh_{false};  ///< whether every exposure was, and of one sample
 };
 
 }  // namespace aglow

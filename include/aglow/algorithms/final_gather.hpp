@@ -56,7 +56,8 @@ public:
         const B share = 1 / static_cast<B>(options_.rays);
         const double n = static_cast<double>(options_.rays);
         const double mean = static_cast<double>(max_component(sum)) / n;
-        const double variance = std::max(0.0, sum2 / n - mean * mean) / n;
+        // One ray alone may be off by all of itself.
+        const double variance = n > 1 ? std::max(0.0, sum2 / n - mean * mean) / (n - 1) : square(mean);
         // Many rays average the map's own noise out, as their spread tells; what they have in common stays.
         const double common = shared.common / n;
         const double bias = shared.bias / n;

@@ -22,7 +22,7 @@ struct gloss_options {
     /// The least spread: 1 minus the length of the mean direction of what the lobe scatters. A mirror has 0, a diffuse
     /// lobe 1/3, GGX of alpha 0.3 seen from above about 0.1. Narrower lobes are followed by rays.
     double least_spread{0.1};
-    std::uint32_t samples{16};  ///< directions drawn from a lobe
+    std::uint32_t samples{16};  ///< directions drawn from a lobe; one at least
 };
 
 /// A lobe met with light: both known by a few directions drawn from it.
@@ -46,6 +46,7 @@ template <Surface H, std::floating_point T = hit_scalar<H>>
     S squares{};
     vec3<T> towards{0};
     T total{0};
+    samples = std::max(1u, samples);
     for (std::uint32_t i = 0; i < samples; ++i) {
         sobol_sampler<T> random{seed, i};
         const auto next = hit.sample(wo, random, lobe_set::glossy_reflection);
@@ -58,7 +59,7 @@ template <Surface H, std::floating_point T = hit_scalar<H>>
         towards += wi * weight;
         total += weight;
     }
-    const B share = 1 / static_cast<B>(std::max(1u, samples));
+    const B share = 1 / static_cast<B>(samples);
     const S mean = albedo * share;
     const B norm2 = max_component(S(squares * share));
     const B deviation2 = max_component(S(squares * share + mean * mean * (-1 / pi<B>)));

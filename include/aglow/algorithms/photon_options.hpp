@@ -35,7 +35,8 @@ struct photon_options {
                                          ///< more noise, share / sqrt(photons), and the paths of 32 pilots at least.
                                          ///< Likewise reflected caustics beside the caustics. 0 seeks all, as for a
                                          ///< dim room behind a garden in the sun
-    photon_paths paths{};                ///< of each map, where known from an earlier pass; 0: the pilot finds out
+    photon_paths paths{};                ///< of each map, where known from an earlier pass, whose `most_bounces` belong
+                                         ///< to them; 0: the pilot finds out
     std::uint32_t most_bounces{0};       ///< depth cap; 0 for none: roulette ends paths without bias. Where half of
                                          ///< the pilot's paths meet 4096 surfaces, that is the cap: `capped` tells
     std::uint64_t seed{0};               ///< another seed, another picture
@@ -70,6 +71,7 @@ struct photon_maps {
     traced_map<S, T> indirect{};
     traced_map<S, T> reflected{};  ///< a part of `indirect` once more, for gathers that leave it out
     energy_ledger<S> ledger{};
+    std::uint32_t most_bounces{0};  ///< the depth cap that held, asked for or found by the pilot; 0 for none
 
     [[nodiscard]] std::size_t size() const { return direct.size() + caustic.size() + indirect.size(); }
 };

@@ -79,31 +79,61 @@ namespace detail {
 /// stands for as much area as its disc has.
 struct shared_part {
     double all{0};
+    double direct{0};  // of photons
     double indirect{0};
     double caustic{0};
-    double bias{0};
+    double bias{0};         // of the indirect and the caustic light
+    double direct_bias{0};  // of direct light of photons
 };
 
+/// What the maps are off by as a whole, relative to their own light.
+struct map_noise {
+    double direct{0};
+    double indirect{0};
+    double caustic{0};
+};
+
+/// `direct` is of photons where it counts some.
 template <Spectrum S, std::floating_point T>
-[[nodiscard]] shared_part shared_part_of(const S& direct, const density_estimate<S, T>& indirect,
+[[nodiscard]] shared_part shared_part_of(const density_estimate<S, T>& direct, const density_estimate<S, T>& indirect,
                                          const density_estimate<S, T>& caustic) {
-    const double area = indirect.count > 0 ? square(static_cast<double>(indirect.radius)) : 0.0;
+    const T radius = indirect.count > 0 ? indirect.radius : direct.count > 0 ? direct.radius : T(0);
+    const double area = square(static_cast<double>(radius));
     const auto level = [&](const S& s) { return area * static_cast<double>(max_component(s)); };
-    return {level(direct) + level(indirect.value) + level(caustic.value), level(indirect.value), level(caustic.value),
-            area * static_cast<double>(indirect.bias + caustic.bias)};
+    return {level(direct.value) + level(indirect.value) + level(caustic.value),
+            direct.count > 0 ? level(direct.value) : 0.0,
+            level(indirect.value),
+            level(caustic.value),
+            area * static_cast<double>(indirect.bias + caustic.bias),
+            area * static_cast<double>(direct.bias)};
 }
 
 /// All parts together, relative to all light.
-[[nodiscard]] inline shared_error shared_by(const std::vector<shared_part>& parts, double indirect, double caustic) {
+[[nodiscard]] inline shared_error shared_by(const std::vector<shared_part>& parts, const map_noise& noise) {
     shared_part sum;
     for (const shared_part& p : parts) {
         sum.all += p.all;
+        sum.direct += p.direct;
         sum.indirect += p.indirect;
         sum.caustic += p.caustic;
         sum.bias += p.bias;
     }
     if (!(sum.all > 0)) { return {}; }
-    return {(sum.indirect * indirect + sum.caustic * caustic) / sum.all, sum.bias / sum.all};
+    // Maps of their own paths.
+    const double common =
+        std::hypot(sum.direct * noise.direct, sum.indirect * noise.indirect + sum.caustic * noise.caustic);
+    return {common / sum.all, sum.bias / sum.all};
+}
+
+/// The bias of direct light of photons, relative to all light.
+[[nodiscard]] inline double direct_bias(const std::vector<shared_part>& parts) {
+    double bias = 0;
+    double all = 0;
+    for (const shared_part& p : parts) {
+        bias += p.direct_bias;
+        all += p.all;
+    }
+    return all > 0 ? bias / all : 0;
 }
 
 /// Fills all points, `fill(first, count)` a block and far apart from one block to the next, and drops those that were
@@ -180,12 +210,13 @@ public:
     void operator()(std::span<point> points, std::size_t first, std::span<shared_part> parts) const {
         const std::vector<seen> indirect = from(maps_.indirect, points);
         const std::vector<seen> caustic = from(maps_.caustic, points);
-        const std::vector<S> direct = options_.shadow_rays == 0 ? mapped(points) : sampled(points, first);
+        const std::vector<seen> direct =
+            options_.shadow_rays == 0 ? from(maps_.direct, points) : sampled(points, first);
         for (std::size_t i = 0; i < points.size(); ++i) {
             point& p = points[i];
-            p.irradiance = direct[i] + indirect[i].value;
+            p.irradiance = direct[i].value + indirect[i].value;
             p.caustic = caustic[i].value;
-            p.error = caustic[i].error + indirect[i].error;
+            p.error = direct[i].error + caustic[i].error + indirect[i].error;
             p.radius = indirect[i].count > 0 ? indirect[i].radius : T(0);
             p.cut = cut(p, indirect[i], caustic[i]);
             parts[i] = shared_part_of<S, T>(direct[i], indirect[i], caustic[i]);
@@ -199,16 +230,12 @@ private:
     [[nodiscard]] std::vector<seen> from(const photon_map<S, T>& map, std::span<const point> points) const {
         return seen_irradiance<World, S>{scene_, map, options_.density, error_, left_out_, factor_}(points);
     }
-    [[nodiscard]] std::vector<S> mapped(std::span<const point> points) const {
-        std::vector<S> direct;
-        for (const seen& s : from(maps_.direct, points)) { direct.push_back(s.value); }
-        return direct;
-    }
-    [[nodiscard]] std::vector<S> sampled(std::span<const point> points, std::size_t first) const {
-        std::vector<S> direct;
-        for (const point& p : points) {
-            direct.push_back(direct_irradiance(scene_, lights_, p.position, p.normal, error_, options_.shadow_rays,
-                                               mix(options_.seed, first + direct.size())));
+    [[nodiscard]] std::vector<seen> sampled(std::span<const point> points, std::size_t first) const {
+        std::vector<seen> direct(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const point& p = points[i];
+            direct[i].value = direct_irradiance(scene_, lights_, p.position, p.normal, error_, options_.shadow_rays,
+                                                mix(options_.seed, first + i));
         }
         return direct;
     }
@@ -251,13 +278,15 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
         light(std::span{points}.subspan(first, count), first, std::span{parts}.subspan(first, count));
     };
     detail::keep_filled(points, options.progress, fill, run);
-    shared_error shared = detail::shared_by(parts, maps.indirect.common, maps.caustic.common);
+    shared_error shared = detail::shared_by(
+        parts, {.direct = maps.direct.common, .indirect = maps.indirect.common, .caustic = maps.caustic.common});
     // A gather averages over many points, so what they lose in the mean can be given back to each. How well that is
     // known, by half, stays. Of points that count their own photons it is not known: of half the radius, by which bias
     // is told, such a photon makes four times as large a part.
     if (!light.leaves_out()) { shared.bias = 0; }
     for (irradiance_point<S, T>& p : points) { p = p.times(static_cast<band_of<S>>(1 - shared.bias)); }
-    shared.bias /= 2;
+    // Of direct light of photons, whose discs are wide, it is too much of a guess: told only.
+    shared.bias = shared.bias / 2 + (light.leaves_out() ? detail::direct_bias(parts) : 0);
     return irradiance_points<S, T>{points, run, shared};
 }
 

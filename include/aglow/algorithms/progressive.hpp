@@ -58,10 +58,12 @@ public:
                                         {.caustic = options_.caustic,
                                          .indirect = options_.indirect,
                                          .paths = paths_,
+                                         .most_bounces = most_bounces_,
                                          .seed = options_.seed,
                                          .pass = passes_},
                                         run);
         paths_ = {.caustic = maps.caustic.paths, .indirect = maps.indirect.paths};
+        most_bounces_ = maps.most_bounces;
         ++passes_;
         density_options density = options_.density;
         density.shrink *= std::sqrt(radius2_share(static_cast<double>(passes_), options_.alpha));
@@ -78,6 +80,7 @@ private:
     const Lights& lights_;
     progressive_options options_;
     photon_paths paths_{};
+    std::uint32_t most_bounces_{0};  // of the first pass, so that all see the same light
     std::uint64_t passes_{0};
 };
 

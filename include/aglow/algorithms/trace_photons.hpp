@@ -74,6 +74,7 @@ public:
         std::vector<energy_ledger<S>> ledgers;
         for (const auto& block : blocks) { ledgers.push_back(block.ledger); }
         result.ledger = joined<S>(ledgers);
+        result.most_bounces = most_bounces_;
         finish(result.direct, blocks, photon_history::direct, complaint(result.ledger));
         finish(result.caustic, blocks, photon_history::caustic, complaint(result.ledger));
         finish(result.indirect, blocks, photon_history::indirect, complaint(result.ledger));

@@ -54,7 +54,7 @@ struct audit_options {
     /// Standard error that a probe shall have, as a share of `target`.
     double noise = 0.5;
     /// Most samples that all probes together may take, those extra for `class_probes` apart; fewer than wanted make the
-    /// bounds wider, never wrong.
+    /// bounds wider, never wrong. 8 for each probe and 256 for a pilot are the least.
     std::size_t budget = std::numeric_limits<std::size_t>::max();
     /// Largest value that a sample of the probe can have, in the picture's unit, where the host knows one: noise that
     /// looks heavy-tailed is then only slow, and the bounds on the mean error and the energy are widened by what rare
@@ -156,8 +156,8 @@ template <std::floating_point T>
     std::vector<double> bars(picture.image.pixels());
     for (std::size_t i = 0; i < bars.size(); ++i) {
         const auto scale = scale_of(result.scales, detail::class_of(picture, i));
-        bars[i] = scale.value_or(std::numeric_limits<double>::infinity()) *
-                  detail::usable_guess(picture, i, result.dark_floor);
+        const double s = scale.value_or(std::numeric_limits<double>::infinity());
+        bars[i] = is_finite(s) ? s * detail::usable_guess(picture, i, result.dark_floor) : s;  // of no guess either
     }
     return bars;
 }

@@ -100,6 +100,9 @@ public:
     /// Whether the noise falls so slowly that its variance may be infinite, and no bound is known that says otherwise.
     [[nodiscard]] bool heavy_tailed() const { return slow_ && !options_.sample_bound; }
 
+    /// Whether the noise falls so slowly, whatever bound is known.
+    [[nodiscard]] bool slow() const { return slow_; }
+
     /// What rare samples of bounded size that were not met may add to the mean error: the part of Bernstein's
     /// inequality that does not shrink with the variance seen (Maurer & Pontil 2009, theorem 4). 0 where noise falls as
     /// it should.

@@ -71,7 +71,9 @@ template <typename Centre>
     requires std::is_invocable_r_v<double, const Centre&, std::span<const double>>
 [[nodiscard]] interval bootstrap_ratio(std::span<const double> above, std::span<const double> below,
                                        const Centre& centre, const bootstrap_options& options = {}) {
-    if (above.empty() || below.empty()) { throw std::invalid_argument("bootstrap_ratio: a set of runs is empty"); }
+    if (above.empty() || below.empty() || options.resamples == 0) {
+        throw std::invalid_argument("bootstrap_ratio: no runs or no resamples");
+    }
     const auto drawn = [&](std::span<const double> values, std::size_t resample, std::uint64_t side) {
         std::vector<double> again(values.size());
         for (std::size_t i = 0; i < again.size(); ++i) {

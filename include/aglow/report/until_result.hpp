@@ -26,7 +26,9 @@ struct until_progress {
 };
 
 struct render_until_options {
-    /// The target, the confidence over all claims together, and how probes are drawn.
+    /// The target, the confidence over all claims together, and how probes are drawn. Its budget bounds the first look
+    /// alone. Plans are for the bound on the mean error: with a `bias_target`, or `distribution_free`, claims come too
+    /// early and may fail to the last.
     audit_options audit{};
     /// Work before the first look, in the host's unit: passes, samples, photons or seconds.
     double first_work = 1;
@@ -53,8 +55,8 @@ struct render_until_options {
 enum class until_status { reached, unreachable, out_of_work, cancelled, broken };
 
 /// `reached`: `certificate` is certified. `unreachable`: the error falls towards a floor above the target, so other
-/// settings are needed. `out_of_work`: `most_work` is done. `broken`: the picture has pixels that are infinite or NaN,
-/// or the probes gave such answers or lost light to broken ones of their host.
+/// settings are needed. `out_of_work`: `most_work` is done, or some sixty claims failed. `broken`: the picture has
+/// pixels that are infinite or NaN, or the probes gave such answers or lost light to broken ones of their host.
 struct until_result {
     until_status status{until_status::out_of_work};
     audit_result certificate{};  ///< of the last claim; its confidence is that claim's own, as by `share_of_miss`

@@ -98,11 +98,16 @@ public:
 
     /// Whether the measurements exclude every floor at or below the target. All are made by the same probes.
     [[nodiscard]] bool hopeless() const {
+        // What rare samples bring to the same probes looks like an error that stays, and is not the picture's.
+        if (sample_->slow()) { return false; }
         // What few pixels are off by is chance itself, whatever the probes know of it: it need not fall evenly.
         const double doubt = std::hypot(checks_.back().error_deviation / checks_.back().error,
                                         1 / std::sqrt(static_cast<double>(pixels_)));
         return distinct_ >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
     }
+
+    /// Whether so many claims failed that what may be wrong by another is nothing.
+    [[nodiscard]] bool is_out_of_claims() const { return share_of_miss(claims_ + 1) < 1e-6; }
 
     /// Whether the last claim failed, and every other will, because the probes' own answers are broken.
     [[nodiscard]] bool is_broken() const { return broken_; }
