@@ -171,6 +171,22 @@ TEST_CASE("photon_map: at the edge of a surface, the share of the disc that it c
     CHECK(corner.value == Approx(0.25).epsilon(0.02));
 }
 
+TEST_CASE("photon_map: fewer photons than k on a small wall are spread over it, not over what lies beyond") {
+    // Forty on the average, of which 50 are asked for; all but 8 of a second wall far away, which makes the map wide.
+    sample_mean near;
+    sample_mean asked;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        auto photons = sprinkled(10, 1, seed);
+        for (int i = 0; i < 8; ++i) { photons.push_back(on_floor<double, double>(100 + i % 2, i / 2, 1)); }
+        const photon_map<double, double> map{photons};
+        near.add(map.irradiance({0, 0, 0}, {0, 0, 1}).value / 10);
+        asked.add(map.irradiance({0, 0, 0}, {0, 0, 1}, {.max_radius = 0.8}).value / 10);
+    }
+    CHECK(asked.agrees(1));
+    // Of those in the corners little is missed.
+    CHECK(near.mean() == Approx(0.8).margin(0.2));
+}
+
 TEST_CASE("photon_map: photons of another side, plane or normal never count and never shrink the radius") {
     auto photons = colourful(2, 1);
     const photon_map<glm::vec3, float> clean{photons};

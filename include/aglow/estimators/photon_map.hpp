@@ -67,8 +67,9 @@ public:
     void come_in_bunches(double photons) { bunch_ = std::max(1.0, photons); }
 
     /// Irradiance at `point` in W/m², from photons that arrived on the side that unit `normal` points out of; black
-    /// where none are near. k nearest within the largest radius: with all k found, the k-1 inner ones over the disc of
-    /// the k-th; with fewer, all over the largest disc. Together they are unbiased where the density is even. Where k
+    /// where none are near. k nearest within the largest radius: with all k found, or 8 and more within a radius that
+    /// the map chose by itself, all but the farthest over the disc that ends there; with fewer, all over the largest
+    /// disc. Together they are unbiased where the density is even. Where k
     /// photons lie closer together than positions can tell, all that do are spread over the least disc that can be
     /// told.
     [[nodiscard]] density_estimate<S, T> irradiance(const vec3<T>& point, const vec3<T>& normal,
@@ -205,11 +206,20 @@ private:
         return options.max_radius > 0 ? static_cast<T>(options.max_radius) : natural_radius(count_of(options));
     }
 
+    /// The squared radius of the disc over which `found` are spread. A largest radius that nobody asked for may reach
+    /// far beyond the surface: then the farthest found ends the disc, unless they are so few that this is mostly noise.
+    [[nodiscard]] static T disc2_of(const kd_neighbours<T>& found, const density_options& options) {
+        const bool is_cut = found.size() < count_of(options) && options.max_radius <= 0;
+        if (!is_cut || found.size() < fewest_on_rim) { return found.radius2; }
+        return *std::max_element(found.distances2.begin(), found.distances2.end());
+    }
+    static constexpr std::size_t fewest_on_rim = 8;
+
     /// What the nearest that a search `found` within `reach` make.
     template <typename Accept, typename Weigh>
     [[nodiscard]] density_estimate<S, T> sum_of(const kd_neighbours<T>& found, const vec3<T>& point, T reach,
                                                 const density_options& options, Accept& accept, Weigh& weigh) const {
-        const T radius2 = found.radius2 * square(static_cast<T>(options.shrink));
+        const T radius2 = disc2_of(found, options) * square(static_cast<T>(options.shrink));
         const T least2 = square(least_radius(reach));
         if (radius2 < least2) { return over(point, least2, options.kernel, accept, weigh); }
         return with_kernel(options.kernel, [&](auto kernel) {
