@@ -90,7 +90,7 @@ void check_control(const known_box& box, const std::vector<float>& wrong, const 
 
 }  // namespace
 
-TEST_CASE("controls: a photon map with three times the radius is not certified, and with its own it is") {
+TEST_CASE("controls: a photon map with four times the radius is not certified, and with its own it is") {
     const known_box box;
     const auto with = [&](std::uint32_t count) {
         const aglow::photon_mapping_options how{.photons = {.indirect = 50'000, .seed = 7},
@@ -98,7 +98,7 @@ TEST_CASE("controls: a photon map with three times the radius is not certified, 
         return box.picture(aglow::photon_mapping{box.scene, box.scene.lights(), how, aglow::own_threads{}});
     };
     const std::uint32_t own = aglow::density_options{}.count;
-    check_control(box, with(9 * own), with(own));
+    check_control(box, with(16 * own), with(own));
 }
 
 TEST_CASE("controls: a final gather into photons of one bounce is not certified, and into all of them it is") {
