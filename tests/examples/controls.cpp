@@ -158,7 +158,6 @@ TEST_CASE("a large picture's caustics are those of a small one, block by block")
         };
         return aglow::caustic_light(scene, scene.lights(), eye, width, height, {.blocks = blocks});
     };
-    constexpr std::size_t side = 64;
     const std::vector<float> small = caustics(side / 4, side / 4, 0);
     const std::vector<float> large = caustics(side, side, side * side / 16);
     REQUIRE(large.size() == side * side);
