@@ -117,11 +117,9 @@ void state(audit_result& result, const audit_sample<T>& sample, const audit_opti
     const bool bounded = !sample.heavy_tailed();
     result.unmet_error = bounded ? sample.unmet_error(options.confidence) : 0;
     result.mean_error_bound = skewed_upper_bound(errors, options.confidence) + result.unmet_error;
-    const double t = student_t_quantile(options.confidence, static_cast<double>(all.count() - 1));
-    // The probes' noise is still in `mean_error`: at most 3 − 2.8·√2 + 0.8·2 of its size (see `less_noisy`), and as
-    // much as that of the denominators can add.
-    const double left = 0.65 * mean_of(sample.noises()).mean() + mean_of(sample.denominator_noises()).mean();
-    result.mean_error_floor = all.mean() - t * all.standard_error() - left;
+    const running_mean least = mean_of(sample.least_errors());
+    const double t = student_t_quantile(options.confidence, static_cast<double>(least.count() - 1));
+    result.mean_error_floor = least.mean() - t * least.standard_error();
     // Where rare samples were not met, what looks like the picture's error may be all theirs.
     result.mean_error_floor = bounded ? result.mean_error_floor - result.unmet_error : 0;
     result.clipped_error_bound = betting_upper_bound(clipped(plain), options.confidence);

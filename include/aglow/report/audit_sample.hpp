@@ -140,9 +140,10 @@ public:
         return each([&](const probe_record& r) { return r.weight * of_.apart(r) / 2 / of_.scale(r); });
     }
 
-    /// What is added to the error of each probe for the noise in its denominator.
-    [[nodiscard]] std::vector<double> denominator_noises() const {
-        return each([&](const probe_record& r) { return r.weight * of_.denominator_noise2(r); });
+    /// The same from below: what is as often above the mean relative error as below it, or seldomer.
+    [[nodiscard]] std::vector<double> least_errors() const {
+        return each(
+            [&](const probe_record& r) { return r.weight * (of_.error_by_others(r) - of_.denominator_noise2(r)); });
     }
 
     /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in: never too small on

@@ -58,6 +58,20 @@ struct probe_reader {
         return sum / static_cast<double>(r.channels);
     }
 
+    /// Relative error by each batch, with the sign that the other seven give it, averaged: these may get the sign
+    /// wrong, so that the expectation is at most the error's size, whatever the law of the noise.
+    [[nodiscard]] double error_by_others(const probe_record& r) const {
+        double sum = 0;
+        for (std::size_t c = 0; c < r.channels; ++c) {
+            for (unsigned one = 1; one < every_batch; one *= 2) {
+                const double gap = image.at(r.pixel, c) - r.mean(one, c);
+                const bool is_dark = image.at(r.pixel, c) < r.mean(every_batch ^ one, c);
+                sum += gap != 0 ? (is_dark ? -gap : gap) / below(r, c) : 0;
+            }
+        }
+        return sum / static_cast<double>(probe_batches * r.channels);
+    }
+
     [[nodiscard]] double below(const probe_record& r, std::size_t c) const { return std::max(r.mean(c), 0.0) + floor; }
 
     [[nodiscard]] double darkest(const probe_record& r) const {
