@@ -133,7 +133,29 @@ TEST_CASE("render_until: rare bright samples of the probes are not taken for an 
         render_until_options o = options(r);
         o.first_work = 1;
         o.probe_work = 1e-4;
-        CHECK(render_until(render, spikes, o).status != until_status::unreachable);
+        CHECK(render_until(render, spikes, o).status == until_status::reached);
+    }
+}
+
+TEST_CASE("render_until: where the probes' noise has no variance the work ends, though nothing bounds it") {
+    for (const double tail : {1.2, 1.6}) {
+        for (std::uint64_t r = 0; r < 3; ++r) {
+            renderer render{0, 0.25, 0.5, r};
+            const auto endless = [&](std::size_t pixel, std::uint64_t seed) {  // Pareto's law, of mean 1
+                const double u = 1 - unit_interval<double>(mix(seed));
+                return render.f.truth[pixel] * std::pow(u, -1 / tail) * (tail - 1) / tail;
+            };
+            render_until_options o = options(r);
+            o.first_work = 1;
+            o.most_work = std::numeric_limits<double>::infinity();
+            o.probe_work = 1e-4;
+            const until_result result = render_until(render, endless, o);
+            CAPTURE(tail, r);
+            CHECK((result.status == until_status::unreachable || result.status == until_status::reached));
+            CHECK((tail > 1.5 || result.status == until_status::unreachable));
+            CHECK(result.work < 1e7);
+            CHECK(result.probe_samples < 1'000'000'000);
+        }
     }
 }
 

@@ -86,13 +86,6 @@ struct shared_part {
     double direct_bias{0};  // of direct light of photons
 };
 
-/// What the maps are off by as a whole, relative to their own light.
-struct map_noise {
-    double direct{0};
-    double indirect{0};
-    double caustic{0};
-};
-
 /// `direct` is of photons where it counts some.
 template <Spectrum S, std::floating_point T>
 [[nodiscard]] shared_part shared_part_of(const density_estimate<S, T>& direct, const density_estimate<S, T>& indirect,
@@ -108,8 +101,7 @@ template <Spectrum S, std::floating_point T>
             area * static_cast<double>(direct.bias)};
 }
 
-/// All parts together, relative to all light.
-[[nodiscard]] inline shared_error shared_by(const std::vector<shared_part>& parts, const map_noise& noise) {
+[[nodiscard]] inline shared_part sum_of(const std::vector<shared_part>& parts) {
     shared_part sum;
     for (const shared_part& p : parts) {
         sum.all += p.all;
@@ -117,23 +109,9 @@ template <Spectrum S, std::floating_point T>
         sum.indirect += p.indirect;
         sum.caustic += p.caustic;
         sum.bias += p.bias;
+        sum.direct_bias += p.direct_bias;
     }
-    if (!(sum.all > 0)) { return {}; }
-    // Maps of their own paths.
-    const double common =
-        std::hypot(sum.direct * noise.direct, sum.indirect * noise.indirect + sum.caustic * noise.caustic);
-    return {common / sum.all, sum.bias / sum.all};
-}
-
-/// The bias of direct light of photons, relative to all light.
-[[nodiscard]] inline double direct_bias(const std::vector<shared_part>& parts) {
-    double bias = 0;
-    double all = 0;
-    for (const shared_part& p : parts) {
-        bias += p.direct_bias;
-        all += p.all;
-    }
-    return all > 0 ? bias / all : 0;
+    return sum;
 }
 
 /// Fills all points, `fill(first, count)` a block and far apart from one block to the next, and drops those that were
@@ -278,15 +256,22 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
         light(std::span{points}.subspan(first, count), first, std::span{parts}.subspan(first, count));
     };
     detail::keep_filled(points, options.progress, fill, run);
-    shared_error shared = detail::shared_by(
-        parts, {.direct = maps.direct.common, .indirect = maps.indirect.common, .caustic = maps.caustic.common});
+    const detail::shared_part sum = detail::sum_of(parts);
+    shared_error shared;
+    if (sum.all > 0) {
+        const double common =
+            sum.direct * maps.direct.common + sum.indirect * maps.indirect.common + sum.caustic * maps.caustic.common;
+        shared.common = common / sum.all;
+    }
     // A gather averages over many points, so what they lose in the mean can be given back to each. How well that is
-    // known, by half, stays. Of points that count their own photons it is not known: of half the radius, by which bias
-    // is told, such a photon makes four times as large a part.
-    if (!light.leaves_out()) { shared.bias = 0; }
-    for (irradiance_point<S, T>& p : points) { p = p.times(static_cast<band_of<S>>(1 - shared.bias)); }
-    // Of direct light of photons, whose discs are wide, it is too much of a guess: told only.
-    shared.bias = shared.bias / 2 + (light.leaves_out() ? detail::direct_bias(parts) : 0);
+    // known, by half, stays. Of direct light of photons, whose discs are wide, it is too much of a guess: told only. Of
+    // points that count their own photons it is not known: of half the radius, by which bias is told, such a photon
+    // makes four times as large a part.
+    if (sum.all > 0 && light.leaves_out()) {
+        const double lost = sum.bias / sum.all;
+        for (irradiance_point<S, T>& p : points) { p = p.times(static_cast<band_of<S>>(1 - lost)); }
+        shared.bias = lost / 2 + sum.direct_bias / sum.all;
+    }
     return irradiance_points<S, T>{points, run, shared};
 }
 

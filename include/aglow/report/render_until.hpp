@@ -90,7 +90,7 @@ template <typename Advance, Probe P, Executor E = in_sequence>
         if (reached) { return end(until_status::reached, work); }
         if (rule.is_broken()) { return end(until_status::broken, work); }
         if (!going_on) { return end(until_status::cancelled, work); }
-        if (rule.hopeless()) { return end(until_status::unreachable, work); }
+        if (rule.gives_up(plain, probe, work, run)) { return end(until_status::unreachable, work); }
         if (out_of_work || rule.is_out_of_claims()) { return end(until_status::out_of_work, work); }
     }
 }

@@ -96,14 +96,15 @@ public:
         return result;
     }
 
-    /// Whether the measurements exclude every floor at or below the target. All are made by the same probes.
-    [[nodiscard]] bool hopeless() const {
-        // What rare samples bring to the same probes looks like an error that stays, and is not the picture's.
-        if (sample_->slow()) { return false; }
-        // What few pixels are off by is chance itself, whatever the probes know of it: it need not fall evenly.
-        const double doubt = std::hypot(checks_.back().error_deviation / checks_.back().error,
-                                        1 / std::sqrt(static_cast<double>(pixels_)));
-        return distinct_ >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
+    /// Whether the target is out of reach, or will never be claimed. What rare samples bring to the same probes looks
+    /// like an error that stays: such probes are made sharper before anything is concluded from it, as far as patience
+    /// goes.
+    template <Probe P, Executor E>
+    bool gives_up(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        while (target_is_excluded() && sample_->slow() && !blunt_ && is_patient()) {
+            sharpen(noise_ / 2, picture, probe, work, run);
+        }
+        return target_is_excluded() || is_blinded(picture, probe, work, run);
     }
 
     /// Whether so many claims failed that what may be wrong by another is nothing.
@@ -161,6 +162,23 @@ private:
         add(seen(work));
     }
 
+    /// Whether the probes' noise, which no picture changes, stays heavy-tailed to the end of patience, and that is not
+    /// the chance of few.
+    template <Probe P, Executor E>
+    bool is_blinded(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        if (!claiming_ || !sample_->heavy_tailed() || may_be_sharper()) { return false; }
+        grow(options_.audit.probes, picture, probe, work, run);
+        return sample_->heavy_tailed() && !may_be_sharper();
+    }
+
+    /// Whether the measurements exclude every floor at or below the target. All are made by the same probes.
+    [[nodiscard]] bool target_is_excluded() const {
+        // What few pixels are off by is chance itself, whatever the probes know of it: it need not fall evenly.
+        const double doubt = std::hypot(checks_.back().error_deviation / checks_.back().error,
+                                        1 / std::sqrt(static_cast<double>(pixels_)));
+        return distinct_ >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
+    }
+
     [[nodiscard]] std::size_t probes() const { return sample_->probes(); }
 
     [[nodiscard]] until_check seen(double work) {
@@ -210,10 +228,12 @@ private:
     }
 
     /// Whether more samples may help: not without end where noise seems heavy-tailed, nor where it did not fall.
-    [[nodiscard]] bool may_be_sharper() const {
-        if (blunt_) { return false; }
+    [[nodiscard]] bool may_be_sharper() const { return !blunt_ && (!sample_->heavy_tailed() || is_patient()); }
+
+    /// Whether patience reaches for four times the samples.
+    [[nodiscard]] bool is_patient() const {
         const double most = options_.audit.patience / square(options_.audit.noise * options_.audit.target);
-        return !sample_->heavy_tailed() || 4 * static_cast<double>(sample_->samples_per_probe()) <= most;
+        return 4 * static_cast<double>(sample_->samples_per_probe()) <= most;
     }
 
     /// Whether the error seems to stay above the target, or to need much more work.
