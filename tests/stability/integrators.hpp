@@ -72,9 +72,8 @@ template <typename World, typename Light>
     };
     const photon_options photons{
         .direct = o.photons / 2, .caustic = o.photons / 2, .indirect = o.photons, .pilot_paths = o.photons};
-    const caching_options caching{.fill = {.rays = o.rays},
-                                  .view = {.width = o.size, .height = o.size},
-                                  .caustics = {.photons = photons}};
+    const caching_options caching{
+        .fill = {.rays = o.rays}, .view = {.width = o.size, .height = o.size}, .caustics = {.photons = photons}};
     show("path tracing", path_tracer{scene, light});
     show("photon mapping", photon_mapping{scene, light, {.photons = photons}, run});
     show("final gathering", final_gathering{scene, light, {.photons = photons, .rays = o.rays}, run});
