@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -255,6 +256,61 @@ TEST_CASE("fill_cache: a crevice takes no more records than its area over the sm
     // Records lie at least half the smallest reach apart: discs of a quarter of it do not overlap.
     CHECK(static_cast<double>(c.size()) < square(0.3 + 0.02) / (pi<double> * square(0.02 / 4)));
     for (std::uint32_t i = 0; i < c.size(); ++i) { CHECK(c[i].radius() >= 0.02f); }
+}
+
+TEST_CASE("fill_cache: what a later record bares is covered again") {
+    struct place {
+        rgb position;
+        rgb normal;
+        float reach;
+    };
+    // The second covers the third until the fourth, close to the second, clamps it.
+    const std::vector<place> places{{{0, 0, 0}, {0, 0, 1}, 0.2f},
+                                    {{0.09f, 0, 0}, {0, 0, 1}, 0.2f},
+                                    {{-0.02f, 0, 0.22f}, {1, 0, 0}, 0.05f},
+                                    {{-0.02f, 0, 0.01f}, {1, 0, 0}, 0.03f}};
+    candidates where;
+    for (const place& p : places) { where.push_back({{p.position, p.normal, 1e-6f}, 0, where.size()}); }
+    const auto reach = [&](const ray<float>& r, const random_numbers<float>&) {
+        float nearest = 1;
+        float found = 0;
+        for (const place& p : places) {
+            const float away = glm::distance(p.position, r.origin);
+            if (away < nearest) { nearest = away, found = p.reach; }
+        }
+        return incoming_light<rgb, float>{rgb{1}, found};
+    };
+    irradiance_cache_options o;
+    o.reach = {.metric = error_metric::split_sphere, .accuracy = 1};
+    cache c{1.f, o};
+    const fill_result result = fill_cache(c, where, reach, {.rays = 64});
+    CHECK(result.uncovered == 0);
+    for (const place& p : places) { CHECK(c.lookup(p.position, p.normal)); }
+}
+
+TEST_CASE("fill_cache: irradiance that no ray brings has its error told, and makes that of rays no greater") {
+    struct half_seen {
+        float rays;
+        float error;
+        glow_of room{};
+        incoming_light<rgb, float> operator()(const ray<float>& r, const random_numbers<float>& numbers) const {
+            const float bright = numbers.at(1, purpose::light).next_1d() < 0.25f ? 4 * rays : 0;
+            return {rgb{bright}, room(r, numbers).distance};
+        }
+        [[nodiscard]] estimate<rgb> unseen(const gather_point<float>&) const { return {rgb{1}, error}; }
+    };
+    const auto where = around(200);
+    const auto filled = [&](const half_seen& light) {
+        cache c{1.732f};
+        const fill_result result = fill_cache(c, where, light, {.rays = 100});
+        return std::pair{static_cast<double>(c[0].relative_noise()), double(result.rays) / double(result.records)};
+    };
+    CHECK(filled({0, 0.1f}).first == Approx(0.05).epsilon(0.01));
+    CHECK(filled({0, 0}).first == 0);
+    // Ten rays in a hundred say how noisy they are to a third or so; what no ray brings is twenty times their light.
+    const auto [noise, rays] = filled({0.05f / pi<float>, 0});
+    CHECK(noise == Approx(std::sqrt(3.0 / 100) * 0.05 / 1.05).epsilon(0.4));
+    CHECK(rays < 110);
 }
 
 TEST_CASE("fill_cache: candidates that are no places, and light that is no number, are refused and end") {

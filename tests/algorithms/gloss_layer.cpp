@@ -178,6 +178,26 @@ TEST_CASE("gloss_layer: a room with a broadly glossy floor looks as path tracing
     CHECK(std::abs(off / level) < 0.02);
 }
 
+TEST_CASE("gloss_layer: what all that is read from the cache is off by together is told of gloss too") {
+    const auto room = glossy_room(4);
+    const bounds<float> box{{-1, -1, -1}, {1, 1, 1}};
+    const irradiance_caching cached{room.scene, room.light, box, eye, options()};
+    const auto nothing = [](auto&&...) { return estimate<rgb>{}; };
+    const auto with = [&](const shared_error& shared) {
+        const glossy_cache_layers layers{room.scene, room.light, cached.cache(), nothing, {}, shared, nullptr};
+        const auto floor = room.scene.intersect({{0.1f, 0.1f, 0}, {0, 0, -1}});
+        REQUIRE(floor);
+        return layers(*floor, {0, 0, 1}, 1e-6f, random_numbers<float>{{}}, 0);
+    };
+    const auto told = with({.common = 0.5, .bias = -0.25});
+    const auto untold = with({});
+    CHECK(told.value == untold.value);
+    CHECK(untold.common == 0);
+    CHECK(told.common > 0);
+    CHECK(told.bias == -told.common / 2);
+    CHECK(told.error >= 2 * told.common);
+}
+
 TEST_CASE("gloss_layer: lobes narrower than asked for are left to rays, to the last bit") {
     const auto room = glossy_room(1000);
     const bounds<float> box{{-1, -1, -1}, {1, 1, 1}};

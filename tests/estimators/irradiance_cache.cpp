@@ -483,6 +483,28 @@ TEST_CASE("irradiance_cache: the noise told after smoothing is the noise there i
     CHECK(std::sqrt(told2) / spread(frozen, constant).second == Approx(1).epsilon(0.35));
 }
 
+TEMPLATE_TEST_CASE("irradiance_cache: smoothed records were made of the same rays, and blending them averages no more",
+                   "", float, double) {
+    using T = TestType;
+    for (const bool smoothing : {false, true}) {
+        auto o = by_distance();
+        o.smoothing = smoothing;
+        irradiance_cache<vec3<T>> c{T(10), o};
+        for (int i = 0; i < 8; ++i) {
+            irradiance_estimate<vec3<T>, T> e;
+            e.axes = frame<T>{vec3<T>{0, 0, 1}};
+            e.irradiance = vec3<T>{T(2) + T(0.1) * (i % 2 == 0 ? T(1) : T(-1))};
+            e.relative_noise = T(0.2) * 2 / e.irradiance.x;
+            e.mean_inverse_distance = 1;
+            e.rays = 100;
+            c.insert(e);
+        }
+        const auto a = c.freeze().lookup({0, 0, 0}, {0, 0, 1});
+        CHECK(a.irradiance.x == Approx(2).epsilon(1e-3));
+        CHECK(a.error == Approx(0.4 / std::sqrt(8)).epsilon(0.01));
+    }
+}
+
 TEST_CASE("irradiance_cache: smoothing stops at a step of light that is greater than the noise") {
     const auto step = [](float x) { return x < 1.5f ? 1.f : 3.f; };
     const auto frozen = noisy_floor(step, true, 0.02f, 3).freeze();

@@ -346,6 +346,23 @@ TEST_CASE("reach_of: a huge footprint does not reach past the surroundings") {
     CHECK(reach_of(e, {}, 10.f, 1000.f).radius == Approx(0.3f));
 }
 
+TEST_CASE("reach_of: a lower limit raises the axes that are below it, and takes none beyond the largest reach") {
+    auto e = estimate_at<double, double>({0, 0, 0}, {0, 0, 1}, 1);
+    record_reach_options o{.accuracy = 0.1, .minimum_radius = 1e-6, .maximum_radius = 1, .geometric_limit = 1e6};
+    e.curvature = {3, 0, 0.75};
+    const record_reach<double> own = reach_of(e, o, 1.0, 0.0);
+    REQUIRE(own.ratio == Approx(std::sqrt(2)));
+    const auto raised = [&](double lowest) {
+        o.minimum_radius = lowest;
+        return reach_of(e, o, 1.0, 0.0);
+    };
+    const record_reach<double> between = raised(1.2 * own.radius);
+    CHECK(between.radius == Approx(1.2 * own.radius));
+    CHECK(between.radius * between.ratio == Approx(own.radius * own.ratio));
+    CHECK(between.own_radius == own.radius);
+    CHECK(raised(1.5 * own.radius).ratio == 1);
+}
+
 TEST_CASE("is_usable: refuses whatever is not a number, and estimates from mostly bad rays") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();

@@ -23,15 +23,36 @@ namespace aglow {
 
 namespace detail {
 
+/// What light at `places` is off by together that came to the records of `finished` by no ray of `reader`.
+template <typename Frozen, typename Reader, std::floating_point T>
+[[nodiscard]] shared_error unseen_at(const Frozen& finished, const Reader& reader,
+                                     const std::vector<gather_point<T>>& places) {
+    if constexpr (KnowsUnseen<Reader, T>) {
+        double light = 0;
+        double common = 0;
+        double bias = 0;
+        for (const gather_point<T>& place : places) {
+            const auto answer = finished.lookup(place.position, place.normal);
+            if (!answer) { continue; }
+            const auto unseen = reader.unseen(place);
+            light += static_cast<double>(max_component(answer.irradiance));
+            common += static_cast<double>(unseen.common);
+            bias += static_cast<double>(unseen.bias);
+        }
+        if (light > 0) { return {common / light, bias / light}; }
+    }
+    return {};
+}
+
 /// What a picture from `cache` is off by everywhere, told from a thousand of the places that it was made for.
-template <typename Cache, std::floating_point T>
-[[nodiscard]] shared_error shared_at(const Cache& cache, const typename Cache::frozen& finished,
+template <typename Cache, typename Reader, std::floating_point T>
+[[nodiscard]] shared_error shared_at(const Cache& cache, const typename Cache::frozen& finished, const Reader& reader,
                                      const std::vector<cache_candidate<T>>& places) {
     constexpr std::size_t enough = 1024;
     std::vector<gather_point<T>> some;
     const std::size_t step = 1 + places.size() / enough;
     for (std::size_t i = step / 2; i < places.size(); i += step) { some.push_back(places[i].place); }
-    return cache.shared(finished, some);
+    return cache.shared(finished, some) + unseen_at(finished, reader, some);
 }
 
 }  // namespace detail
@@ -73,7 +94,7 @@ template <Scene World, typename Eye, typename Reader, Executor Run, typename Fro
     });
     if (tell && !filled.cancelled) { (void)tell(1); }
     frozen = cache.freeze(run);
-    return shared_at(cache, frozen, places);
+    return shared_at(cache, frozen, reader, places);
 }
 
 }  // namespace detail
@@ -126,7 +147,8 @@ public:
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         const auto diffuse = indirect();
         if constexpr (Features.incident) {
-            const glossy_cache_layers layers{scene_, lights_, cache_, diffuse, options_.gloss, options_.paths.faults};
+            const glossy_cache_layers layers{
+                scene_, lights_, cache_, diffuse, options_.gloss, shared_, options_.paths.faults};
             return layered_integrator{scene_, lights_, layers, options_.paths}(eye, numbers);
         } else {
             const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults}, diffuse};

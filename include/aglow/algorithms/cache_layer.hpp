@@ -10,8 +10,9 @@
 #include <aglow/algorithms/incoming_light.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/algorithms/photon_options.hpp>
 #include <aglow/core/lasting.hpp>
-#include <aglow/estimators/photon_map.hpp>
+#include <aglow/estimators/estimate.hpp>
 
 namespace aglow {
 
@@ -33,15 +34,18 @@ template <typename Source, Spectrum S, std::floating_point T>
 struct caustic_reader {
     Source source;
     emission_rule caustics;
-    const photon_map<S, T>& reflected;
+    const traced_map<S, T>& reflected;
     density_options density;
 
     template <Numbers N>
     [[nodiscard]] auto operator()(const ray<T>& r, const N& numbers) const {
         return source.incoming(r, numbers, caustics);
     }
-    [[nodiscard]] S unseen(const gather_point<T>& at) const {
-        return reflected.irradiance(at.position, at.normal, density).value;
+    [[nodiscard]] estimate<S> unseen(const gather_point<T>& at) const {
+        const auto e = reflected.irradiance(at.position, at.normal, density);
+        estimate<S> result = shared_error{.common = reflected.common}.on(e.value, e.error);
+        result.bias = e.bias;
+        return result;
     }
 };
 
@@ -66,7 +70,7 @@ public:
             if (answer) { return shared_.on(answer.irradiance, static_cast<band_of<S>>(answer.error)); }
             const gather_point<T> here{vec3<T>(hit.position), side, error};
             S gathered = gather_once(reader_, here, N{numbers.fork(bounce)}, fallback_);
-            if constexpr (KnowsUnseen<Reader, T>) { gathered = gathered + reader_.unseen(here); }
+            if constexpr (KnowsUnseen<Reader, T>) { gathered = gathered + reader_.unseen(here).value; }
             return shared_.on(gathered,
                               max_component(gathered) / std::sqrt(static_cast<band_of<S>>(fallback_.count())));
         });

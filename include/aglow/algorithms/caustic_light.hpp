@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <aglow/algorithms/film.hpp>
@@ -20,22 +21,31 @@ struct caustic_light_options {
     std::size_t photons{100'000};
     std::uint32_t samples{2};    ///< per block of pixels
     std::size_t blocks{16'384};  ///< square ones, of whole pixels: a picture is looked at in about so many at most, so
-                                 ///< that large ones cost no more; 0 for every pixel
+                                 ///< that large ones cost no more, but for ribbons; 0 for every pixel
     std::uint64_t seed{0};
     density_options density{};
 };
 
 namespace detail {
 
+/// Neither lights nor a sky.
+template <Spectrum S, std::floating_point T>
+struct darkness {
+    using scalar = T;
+    template <Sampler R>
+    [[nodiscard]] std::optional<illumination<S, T>> illuminate(const vec3<T>&, R&) const {
+        return std::nullopt;
+    }
+};
+
 /// An integrator that sees nothing but one photon map, over mirrors and through glass too.
-template <Scene World, Illuminator Lights>
+template <Scene World>
 class map_view {
 public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
 
-    map_view(const World& scene, const Lights& lights, const map_layer<spectrum, scalar>& layer)
-        : scene_{scene}, lights_{lights}, layer_{layer} {}
+    map_view(const World& scene, const map_layer<spectrum, scalar>& layer) : scene_{scene}, layer_{layer} {}
 
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
@@ -43,14 +53,16 @@ public:
             walk.add(layer_(stop.hit, stop.wo, stop.error, walk.numbers(), stop.bounce));
             return stop.hit.lobes() & lobe_set::specular;
         };
-        // A walk of mirrors alone, by a rule under which it takes no light for itself.
-        path_walk<World, Lights, N, true> walk{scene_, lights_, numbers, emission_rule::no_caustics, options_, eye};
+        // A walk of mirrors alone, by a rule under which it takes no light of surfaces for itself.
+        path_walk<World, dark, N, true> walk{scene_, dark_, numbers, emission_rule::no_caustics, options_, eye};
         return {walk.run(shade, options_.split).radiance, 0};
     }
 
 private:
+    using dark = darkness<spectrum, scalar>;
+
     const World& scene_;
-    const Lights& lights_;
+    dark dark_{};
     const map_layer<spectrum, scalar>& layer_;
     path_options options_{};
 };
@@ -85,8 +97,8 @@ template <Scene World, Illuminator Lights, typename Eye, Executor Run = in_seque
         const vec2<T> whole = at * static_cast<T>(block);
         return eye(vec2<T>{std::min(whole.x, static_cast<T>(width)), std::min(whole.y, static_cast<T>(height))});
     };
-    seen.expose(through, detail::map_view<World, Lights>{scene, lights, layer},
-                {.samples = options.samples, .seed = options.seed}, run);
+    seen.expose(through, detail::map_view<World>{scene, layer}, {.samples = options.samples, .seed = options.seed},
+                run);
     for (std::size_t i = 0; i < width * height; ++i) {
         light.push_back(max_component(seen.radiance(i % width / block, i / width / block)));
     }

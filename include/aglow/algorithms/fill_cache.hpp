@@ -12,7 +12,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -27,10 +27,12 @@
 
 namespace aglow {
 
-/// A source of incoming light that knows of irradiance which its rays do not bring: `unseen(gather_point)`, W/m².
+/// A source of incoming light that knows of irradiance which its rays do not bring: `unseen(gather_point)`, an
+/// `estimate` in W/m².
 template <typename F, typename T>
 concept KnowsUnseen = requires(const F& incoming, const gather_point<T>& at) {
-    incoming.unseen(at);
+    incoming.unseen(at).value;
+    incoming.unseen(at).error;
 };
 
 namespace detail {
@@ -51,23 +53,26 @@ public:
           incoming_{incoming},
           options_{options},
           run_{run},
-          estimator_{hemisphere_of(options.rays), parts()} {}
+          estimator_{hemisphere_of(options.rays), parts()},
+          taken_(candidates.size()) {}
 
     template <typename Progress>
     fill_result fill(Progress&& progress) {
-        pending_.resize(candidates_.size());
-        std::iota(pending_.begin(), pending_.end(), std::size_t{0});
+        const T wanted = static_cast<T>(options_.minimum_weight);
+        pending_ = untaken();
         const auto& reach = cache_.options().reach;
         const T finest = static_cast<T>(reach.minimum_radius / 2) * cache_.scene_radius();
         T spacing = static_cast<T>(reach.maximum_radius) * cache_.scene_radius();
         for (bool last = false; !last && !result_.cancelled; spacing *= static_cast<T>(options_.refinement)) {
             last = spacing <= finest;
-            drop_covered();
+            drop_covered(wanted);
             if (pending_.empty() || full()) { break; }
             ++result_.rounds;
             gather(thinned(std::max(spacing, finest)), progress);
         }
-        drop_covered();
+        drop_covered(wanted);
+        cover_bared(finest, progress);
+        drop_covered(wanted);
         result_.uncovered = pending_.size();
         if constexpr (Cache::record::features.noise) { sharpen(progress); }
         return result_;
@@ -92,17 +97,51 @@ private:
 
     /// Adds what no ray brings, where the source of light knows of such.
     void add_unseen(irradiance_estimate<S, T>& to, const gather_point<T>& at) const {
-        if constexpr (KnowsUnseen<Incoming, T>) { to.irradiance = to.irradiance + incoming_.unseen(at); }
+        if constexpr (KnowsUnseen<Incoming, T>) {
+            const auto unseen = incoming_.unseen(at);
+            const T rays = static_cast<T>(max_component(to.irradiance));
+            to.irradiance = to.irradiance + unseen.value;
+            const T all = static_cast<T>(max_component(to.irradiance));
+            // Errors are two standard deviations or so.
+            const T off = static_cast<T>(unseen.error) / 2;
+            if (all > 0) { to.relative_noise = std::hypot(to.relative_noise * (rays / all), off / all); }
+        }
     }
 
     [[nodiscard]] bool full() const {
         return options_.maximum_records > 0 && cache_.size() >= options_.maximum_records;
     }
 
-    /// Looks up all that is pending and keeps, in order, what is not covered.
-    void drop_covered() {
+    /// The candidates that no record was made for.
+    [[nodiscard]] std::vector<std::size_t> untaken() const {
+        std::vector<std::size_t> all;
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
+            if (!taken_[i]) { all.push_back(i); }
+        }
+        return all;
+    }
+
+    /// Makes records where no record speaks any more, since those that did were clamped after. What is pending stays
+    /// so.
+    template <typename Progress>
+    void cover_bared(T spacing, Progress& progress) {
+        if (result_.cancelled) { return; }
+        const std::vector<std::size_t> before = pending_;
+        while (true) {
+            pending_ = untaken();
+            drop_covered(0);
+            if (pending_.empty() || full() || result_.cancelled) { break; }
+            ++result_.rounds;
+            gather(thinned(spacing), progress);
+        }
+        std::vector<std::size_t> both;
+        std::set_union(before.begin(), before.end(), pending_.begin(), pending_.end(), std::back_inserter(both));
+        pending_ = std::move(both);
+    }
+
+    /// Looks up all that is pending and keeps, in order, what is not covered by more weight than `wanted`.
+    void drop_covered(T wanted) {
         std::vector<char> covered(pending_.size());
-        const T wanted = static_cast<T>(options_.minimum_weight);
         for_each_block(run_, pending_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
                 const gather_point<T>& p = candidates_[pending_[i]].place;
@@ -130,6 +169,7 @@ private:
             if (apart.has_room(place) && !full_with(taken.size())) {
                 apart.add(i, place);
                 taken.push_back(i);
+                taken_[i] = 1;
             } else {
                 rest.push_back(i);
             }
@@ -238,6 +278,7 @@ private:
     const E& run_;
     irradiance_estimator<T> estimator_;
     std::vector<std::size_t> pending_;
+    std::vector<char> taken_;  ///< by candidate: whether a record was made for it, good or not
     std::vector<made_record> made_;
     std::size_t to_sharpen_{0};  ///< rays wanted for records gathered anew, in units of `options_.rays`
     std::size_t sharpened_{0};

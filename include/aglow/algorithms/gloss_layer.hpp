@@ -13,6 +13,7 @@
 #include <aglow/algorithms/direct_light.hpp>
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/core/sobol.hpp>
+#include <aglow/estimators/estimate.hpp>
 #include <aglow/estimators/linear_light.hpp>
 
 namespace aglow {
@@ -82,9 +83,16 @@ class glossy_cache_layers {
     using B = band_of<S>;
 
 public:
+    /// `shared`: what all that is read from `cache` is off by together.
     glossy_cache_layers(const World& scene, const Lights& lights, const Cache& cache, Diffuse diffuse,
-                        const gloss_options& options, host_faults* faults)
-        : scene_{scene}, lights_{lights}, cache_{cache}, diffuse_{diffuse}, options_{options}, faults_{faults} {}
+                        const gloss_options& options, const shared_error& shared, host_faults* faults)
+        : scene_{scene},
+          lights_{lights},
+          cache_{cache},
+          diffuse_{diffuse},
+          options_{options},
+          shared_{shared},
+          faults_{faults} {}
 
     template <typename N>
     [[nodiscard]] shaded<S> operator()(const hit_of<World>& hit, const vec3<T>& wo, T error, const N& numbers,
@@ -119,13 +127,13 @@ private:
     /// Cauchy-Schwarz: what the light is beside the linear fit is of mean zero, so it meets only what the lobe is
     /// beside its mean; what the irradiance is off by meets all of it.
     template <typename Found>
-    [[nodiscard]] static estimate<S> of(const lobe_in_light<S, T>& lobe, const Found& found) {
+    [[nodiscard]] estimate<S> of(const lobe_in_light<S, T>& lobe, const Found& found) const {
         const B irradiance = max_component(found.irradiance);
         const B guess =
             (static_cast<B>(found.misfit) * irradiance * lobe.deviation + static_cast<B>(found.error) * lobe.norm) /
             std::sqrt(pi<B>);
         const S radiance = found.irradiance * lobe.radiance;
-        return {is_radiance(radiance) ? radiance : S{}, guess};
+        return shared_.on(is_radiance(radiance) ? radiance : S{}, guess);
     }
 
     const World& scene_;
@@ -133,6 +141,7 @@ private:
     const Cache& cache_;
     Diffuse diffuse_;
     gloss_options options_;
+    shared_error shared_;
     host_faults* faults_;
 };
 

@@ -233,6 +233,7 @@ private:
         if (!(worth > 0 && is_finite(worth))) { return; }
         for (T& share : lobes.share) { share = share / worth; }
         const T more = static_cast<T>(options_.gain) * worth;
+        if (!(more > 0)) { return; }
         lobes.chance = std::min(static_cast<T>(options_.most), more / (more + rest));
     }
 

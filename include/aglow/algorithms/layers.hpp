@@ -73,7 +73,7 @@ private:
 };
 
 /// Layer: light straight from the lights by one shadow ray, on the lobes `lit`. Glossy lobes share it with the rays
-/// that `layered_integrator` scatters.
+/// that `layered_integrator` scatters. `faults` hears of light that broken answers cost as if the path carried 1.
 template <Scene World, Illuminator Lights>
 class direct_layer {
 public:

@@ -218,7 +218,7 @@ public:
                        const path_options& options = {})
         : scene_{*scene}, lights_{*lights}, guide_{*guide}, options_{options} {}
 
-    /// Radiance that comes back along `eye`, W/(m² sr); unbiased, so its own error guess is 0.
+    /// Radiance that comes back along `eye`, W/(m² sr); unbiased without `most_bounces`, so its own error guess is 0.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         const auto light =

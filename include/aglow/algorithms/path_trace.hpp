@@ -1,6 +1,7 @@
 // The reference: path tracing, slow and right, the judge of all others.
 //
-// Kajiya 1986, with next-event estimation, multiple importance sampling and Russian roulette; unbiased, no depth cap.
+// Kajiya 1986, with next-event estimation, multiple importance sampling and Russian roulette; unbiased, no depth cap
+// unless asked for.
 #pragma once
 
 #include <aglow/algorithms/path_walk.hpp>
@@ -18,7 +19,7 @@ public:
     path_tracer(lasting<World> scene, lasting<Lights> lights, const path_options& options = {})
         : scene_{*scene}, lights_{*lights}, options_{options} {}
 
-    /// Radiance that comes back along `eye`, W/(m² sr); unbiased, so its own error guess is 0.
+    /// Radiance that comes back along `eye`, W/(m² sr); unbiased without `most_bounces`, so its own error guess is 0.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
         return {walk_path<true>(scene_, lights_, eye, numbers, emission_rule::all, options_).radiance, 0};

@@ -268,9 +268,10 @@ template <Scene World, Illuminator Lights, Executor Run = in_sequence>
     // points that count their own photons it is not known: of half the radius, by which bias is told, such a photon
     // makes four times as large a part.
     if (sum.all > 0 && light.leaves_out()) {
-        const double lost = sum.bias / sum.all;
+        const double bias = sum.bias / sum.all;
+        const double lost = std::clamp(bias, -0.5, 0.5);  // more is the noise of few photons
         for (irradiance_point<S, T>& p : points) { p = p.times(static_cast<band_of<S>>(1 - lost)); }
-        shared.bias = lost / 2 + sum.direct_bias / sum.all;
+        shared.bias = bias - lost / 2 + sum.direct_bias / sum.all;
     }
     return irradiance_points<S, T>{points, run, shared};
 }

@@ -48,7 +48,9 @@ concept Emitter = requires(const L& light, random_sampler<scalar_of<L>>& random)
 /// - optional `escaped(direction)`: radiance that comes from beyond the scene, from `direction`; and
 ///   `escaped_pdf(point, direction)`: the density with which `illuminate` looks there.
 ///
-/// Must be true: the mean of radiance_over_pdf cos, where not occluded, is the direct irradiance.
+/// Must be true: the mean of radiance_over_pdf cos, where not occluded, is the direct irradiance. Light that
+/// `illuminate` never finds, such as a sky without `escaped_pdf`, is whole under path tracing alone: photon maps and
+/// caches leave parts of it out.
 template <typename L>
 concept Illuminator = requires(const L& light, vec3<scalar_of<L>> point, random_sampler<scalar_of<L>>& random) {
     static_cast<bool>(light.illuminate(point, random));

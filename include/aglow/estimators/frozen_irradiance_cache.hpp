@@ -43,7 +43,7 @@ public:
 
     /// Near items lie side by side in memory, whatever their numbers. Expects usable records.
     frozen_irradiance_cache(const std::vector<item>& items, const irradiance_cache_options& options)
-        : options_{options}, limits_{options.lookup, options.reach.metric} {
+        : options_{options}, limits_{options.lookup, options.reach.metric, options.smoothing && Features.noise} {
         std::vector<stored_sphere<T>> spheres;
         spheres.reserve(items.size());
         for (const item& i : items) {
@@ -127,8 +127,9 @@ public:
         }
         if (best == packed_spheres<T>::none) { return {}; }
         const S& irradiance = records_[best].record.irradiance();
-        const T error = static_cast<T>(max_component(irradiance)) * std::min(T(1), least * bends_[best]);
-        return {irradiance, error, limits_.weight, 1};
+        T error = std::min(T(1), least * bends_[best]);
+        if constexpr (Features.noise) { error += records_[best].record.relative_noise(); }
+        return {irradiance, static_cast<T>(max_component(irradiance)) * error, limits_.weight, 1};
     }
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }

@@ -103,7 +103,7 @@ public:
             blend.add(
                 count,
                 [&](std::size_t i) {
-                    return near_record{near[i]->record, own_bend(near[i]->record.radius())};
+                    return near_record{near[i]->record, own_bend(*near[i])};
                 },
                 [&](detail::verdict v) { detail::count(counters, v); });
             count = 0;
@@ -175,7 +175,7 @@ public:
     [[nodiscard]] frozen freeze(const E& run = {}) const {
         std::vector<T> bends(size());
         for_each_record(run, [&](std::size_t i, const item& one) {
-            bends[i] = detail::learnt_bend(tree_, one.record, own_bend(one.record.radius()), limits_);
+            bends[i] = detail::learnt_bend(tree_, one.record, own_bend(one), limits_);
         });
         std::vector<typename frozen::item> items(size());
         for_each_record(run, [&](std::size_t i, const item& one) {
@@ -241,12 +241,15 @@ private:
         settles_at_ = size() + std::max(size() / 16, 32u);
     }
 
-    /// What the rule that set the reach takes the error at the border to be, relative to the irradiance.
-    [[nodiscard]] T own_bend(T radius) const {
+    /// What the rule that set the reach takes the error at the border to be, relative to the irradiance; more where a
+    /// lower limit raised the reach.
+    [[nodiscard]] T own_bend(const item& one) const {
         const T accuracy = static_cast<T>(options_.reach.accuracy);
-        if (options_.reach.metric != error_metric::hessian) { return accuracy; }
-        // Half of lambda R², where R = accuracy (4 scene² / lambda)^(1/4).
-        return std::min(T(1), 2 * square(accuracy * accuracy * scene_radius_ / radius));
+        const T radius = one.record.radius();
+        const T raised = std::max(T(1), radius / one.own_radius);
+        if (options_.reach.metric != error_metric::hessian) { return std::min(T(1), accuracy * raised); }
+        // Half of lambda R², where the own R = accuracy (4 scene² / lambda)^(1/4).
+        return std::min(T(1), 2 * square(accuracy * accuracy * scene_radius_ / radius * square(raised)));
     }
 
     irradiance_cache_options options_;

@@ -78,7 +78,7 @@ private:
     template <typename Run>
     void index_packed(std::span<const landed_photon<S, T>> photons, std::vector<std::uint32_t>& sound,
                       band_of<S> factor, const Run& run) {
-        std::erase_if(sound, [&](std::uint32_t i) { return !is_finite(length2(photons[i].position * T(0x1p-64))); });
+        std::erase_if(sound, [&](std::uint32_t i) { return !detail::is_usable(photons[i].position); });
         bounds<T> box;
         for (const std::uint32_t i : sound) { box.add(photons[i].position); }
         cells_ = place_cells<T>{box};

@@ -168,7 +168,12 @@ private:
         ++sums_.records;
         const T scale = weight * static_cast<T>(max_component(record.irradiance()));
         sums_.error += scale * relative_error;
-        if constexpr (F.noise) { sums_.variance += square(static_cast<double>(scale * record.relative_noise())); }
+        if constexpr (F.noise) {
+            const T noise = scale * record.relative_noise();
+            const T together = limits_.together * noise;
+            sums_.error += together;
+            sums_.variance += square(static_cast<double>(noise - together));
+        }
     }
 
     vec3<T> point_;

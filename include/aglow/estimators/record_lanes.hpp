@@ -137,7 +137,7 @@ public:
         seen<V> s = look(words, points, normals, limits);
         s.weight = weight(limits.metric, s.t2, s.turn);
         const Words used = among & s.good & (V::all(0) < s.weight);
-        addends<V> a = add(words, s, bends, std::make_index_sequence<bands>{});
+        addends<V> a = add(words, s, bends, limits.together, std::make_index_sequence<bands>{});
         a.used = used;
         a.judged = Words::pick(used, is<Words>(verdict::used), s.judged);
         return a;
@@ -237,7 +237,7 @@ private:
     }
 
     template <typename Words, typename V, std::size_t... B>
-    [[gnu::always_inline]] static addends<V> add(const Words* words, const seen<V>& s, const V& bend,
+    [[gnu::always_inline]] static addends<V> add(const Words* words, const seen<V>& s, const V& bend, float together,
                                                  std::index_sequence<B...>) {
         const V changes[bands] = {change<B>(words, s)...};
         const V light[bands] = {V::from_bits(words[at::light + B])...};
@@ -253,7 +253,10 @@ private:
                      V::all(0)};
         if constexpr (F.noise) {
             const V code = V::of(words[at::noise] & Words::all(0xffff));
-            a.noise = scale * (code / V::max(V::all(65534) - code, V::all(1)));
+            const V noise = scale * (code / V::max(V::all(65534) - code, V::all(1)));
+            const V shared = V::all(together) * noise;
+            a.parts[bands + 1] = a.parts[bands + 1] + shared;
+            a.noise = noise - shared;
         }
         return a;
     }

@@ -105,6 +105,8 @@ template <Spectrum S, std::floating_point T>
         e.mean_inverse_distance > 0 ? std::min(pixels, 1 / e.mean_inverse_distance) : std::min(pixels, longest);
     result.lowest = std::min(longest, std::max(spacing, static_cast<T>(options.minimum_radius) * scene_radius));
     result.radius = std::max(result.own_radius, result.lowest);
+    // The limit raises the axes that are below it, not the other with them.
+    result.ratio = std::max(T(1), result.ratio * (result.own_radius / result.radius));
     return result;
 }
 

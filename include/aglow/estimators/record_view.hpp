@@ -35,17 +35,20 @@ enum class verdict { used, normal, plane, distance };
 /// `record_lookup_options` made ready.
 template <std::floating_point T>
 struct lookup_limits {
-    explicit lookup_limits(const record_lookup_options& options, error_metric rule)
+    /// `smoothed`: whether records hold the mean of those around them.
+    explicit lookup_limits(const record_lookup_options& options, error_metric rule, bool smoothed = false)
         : metric{rule},
           // 1 - cos, without cancellation.
           turn{static_cast<T>(2 * square(std::sin(options.normal_limit / 2)))},
           plane{static_cast<T>(options.plane_tolerance)},
-          weight{static_cast<T>(options.minimum_weight)} {}
+          weight{static_cast<T>(options.minimum_weight)},
+          together{smoothed ? T(1) : T(0)} {}
 
     error_metric metric;
     T turn;
     T plane;
     T weight;
+    T together;  ///< 1 where records were made of the same rays, so that their noise adds up; 0 where each has its own
 };
 
 /// The weight of a record at relative squared distance `t2` and with normals apart by `turn` = (1 - cos) / (1 - cos
