@@ -472,6 +472,19 @@ TEST_CASE("audit: wrong settings are refused by name") {
     CHECK(synthetic::refuses("guess", [&] { (void)audit(wrong, f.probe()); }));
 }
 
+TEST_CASE("statement: a bound of clipped errors is said to be one, and is the one that is told") {
+    const field f{damage::none};
+    audit_result result = audit(f.image(), f.probe(), {.target = 0.05, .distribution_free = true});
+    CHECK(result.distribution_free);
+    result.clipped_error_bound = 0.04;
+    result.mean_error_bound = 0.11;
+    const std::string text = statement(result);
+    CHECK(text.find(": mean relative error, errors above 100 % counted as 100 %, within 5 %") != std::string::npos);
+    CHECK(text.find("the mean relative error, errors above 100 % counted as 100 %, is at most 4 %") !=
+          std::string::npos);
+    CHECK(text.find("11 %") == std::string::npos);
+}
+
 TEST_CASE("statement: says the status, the bound, why, and what was not seen") {
     const field f{damage::too_bright};
     const audit_options options{.target = 0.02, .unseen = {{"caustics of the point light", 0.03}}};
@@ -482,5 +495,10 @@ TEST_CASE("statement: says the status, the bound, why, and what was not seen") {
     CHECK(text.find("with 95 % confidence, 95 % of the pixels are off by at most ") != std::string::npos);
     CHECK(text.find("caustics of the point light, 3 % of the light") != std::string::npos);
     CHECK(percent(0.0412849) == "4.13 %");
+    CHECK(percent_sure(0.95) == "95 %");
+    CHECK(percent_sure(0.99) == "99 %");
+    CHECK(percent_sure(0.99956) == "99.956 %");
+    CHECK(percent_sure(1 - 1e-6) == "99.9999 %");
+    CHECK(percent_sure(1) == "100 %");
     CHECK(percent(std::numeric_limits<double>::infinity()) == "unknown");
 }

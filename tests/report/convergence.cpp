@@ -55,6 +55,14 @@ TEST_CASE("time to error: on a power law the crossing is where the law says") {
     CHECK(time_to_error(times, errors, 0.5).time == 1);
     CHECK(time_to_error(times, errors, 0.001).when == crossing::kind::never);
     CHECK(time_to_error({}, {}, 0.1).when == crossing::kind::never);
+    // Of two-half references an error may come out below zero.
+    for (const double none : {0.0, -1e-6}) {
+        std::vector<double> sunk(times.size(), none);
+        sunk[0] = errors[0];
+        const crossing below = time_to_error(times, sunk, 0.1);
+        CHECK(below.when == crossing::kind::at);
+        CHECK(below.time == times[1]);
+    }
 }
 
 TEST_CASE("convergence table: one row a budget with medians, bands and an efficiency that is flat for pure variance") {

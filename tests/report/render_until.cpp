@@ -87,6 +87,25 @@ TEST_CASE("render_until: an error that stays above the target is called unreacha
     }
 }
 
+TEST_CASE("render_until: an error that stays just above the target, or just below, comes to an end too") {
+    for (const double error : {0.96, 1.0, 1.04, 1.08}) {
+        for (std::uint64_t r = 0; r < 2; ++r) {
+            renderer render{0.05, 0, 0.5, r};
+            (void)render(1);
+            render = {0.05 * error * render.floor / render.f.mean_error(), 1, 0.5, r};
+            render_until_options o = options(r);
+            o.most_work = std::numeric_limits<double>::infinity();
+            o.probe_work = 1e-4;
+            const until_result result = render_until(render, render.f.probe(), o);
+            render(result.work);
+            CAPTURE(error, r, static_cast<int>(result.status), result.work, render.f.mean_error());
+            CHECK((result.status == until_status::unreachable || render.f.mean_error() <= 0.05));
+            CHECK((result.status == until_status::unreachable || result.status == until_status::reached));
+            CHECK(result.work < 1e7);
+        }
+    }
+}
+
 TEST_CASE("render_until: when the work is up it says how far it came and how much is missing") {
     renderer render{0, 1, 0.5, 1};
     render_until_options o = options(1);

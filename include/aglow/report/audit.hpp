@@ -137,6 +137,7 @@ template <std::floating_point T>
 [[nodiscard]] audit_result judged(const audit_sample<T>& sample, const audit_options& options) {
     audit_result result{.target = options.target, .confidence = options.confidence, .quantile = options.quantile};
     result.unseen = options.unseen;
+    result.distribution_free = options.distribution_free;
     result.dark_floor = sample.dark_floor();
     result.probes = sample.probes();
     result.samples_per_probe = sample.samples_per_probe();

@@ -110,6 +110,7 @@ struct audit_result {
     std::size_t samples{0};             ///< all samples spent, the pilot's included
     std::size_t samples_called_for{0};  ///< about how many it takes, where the budget did not allow them; else 0
     std::vector<unseen_transport> unseen{};
+    bool distribution_free{false};  ///< whether `clipped_error_bound` is what was held to the target
 };
 
 /// Throws `std::invalid_argument` that names what is out of range or does not fit.

@@ -67,8 +67,9 @@ struct crossing {
         0};  ///< `at`: the time; `before`: the first time known, an upper limit; `never`: the last, a lower limit
 };
 
-/// The first time at which `errors` is at or below `target`, interpolated between the logarithms of its neighbours.
-/// Expects rising, positive `times` and positive `errors`.
+/// The first time at which `errors` is at or below `target`, interpolated between the logarithms of its neighbours;
+/// that of the first error below zero, as one whose reference's noise was taken out may be, as it is. Expects rising,
+/// positive `times`.
 [[nodiscard]] inline crossing time_to_error(std::span<const double> times, std::span<const double> errors,
                                             double target) {
     if (times.size() != errors.size()) { throw std::invalid_argument("time_to_error: lists of different lengths"); }
@@ -76,6 +77,7 @@ struct crossing {
     if (errors[0] <= target) { return {crossing::kind::before, times[0]}; }
     for (std::size_t i = 1; i < times.size(); ++i) {
         if (errors[i] > target) { continue; }
+        if (!(errors[i] > 0)) { return {crossing::kind::at, times[i]}; }
         const double way = std::log(errors[i - 1] / target) / std::log(errors[i - 1] / errors[i]);
         return {crossing::kind::at, times[i - 1] * std::pow(times[i] / times[i - 1], way)};
     }

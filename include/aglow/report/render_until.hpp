@@ -2,8 +2,9 @@
 //
 // One set of probes looks at every picture on the way; it grows and gets sharper where that saves more rendering than
 // it costs. What the probes see of the light stays true whatever picture they are held against, so nothing is looked at
-// twice. The probability to be wrong is shared out over the claims, so that all of them together are wrong with
-// probability at most α: the union bound asks for no independence. Other looks claim nothing and cost none of it.
+// twice. The probability to be wrong, α, is shared out over the claims: the union bound over them asks for no
+// independence. Other looks claim nothing and pay none of it, though they choose by the same probes when to claim: that
+// all together stay below α is measured (benchmarks/calibration), not proved.
 #pragma once
 
 #include <algorithm>
@@ -90,7 +91,14 @@ template <typename Advance, Probe P, Executor E = in_sequence>
         if (reached) { return end(until_status::reached, work); }
         if (rule.is_broken()) { return end(until_status::broken, work); }
         if (!going_on) { return end(until_status::cancelled, work); }
-        if (rule.gives_up(plain, probe, work, run)) { return end(until_status::unreachable, work); }
+        if (rule.gives_up(plain, probe, work, run)) {
+            certificate = rule.claim();  // says why
+            const bool after_all = certificate.status == audit_status::certified;
+            return end(after_all          ? until_status::reached
+                       : rule.is_broken() ? until_status::broken
+                                          : until_status::unreachable,
+                       work);
+        }
         if (out_of_work || rule.is_out_of_claims()) { return end(until_status::out_of_work, work); }
     }
 }

@@ -54,10 +54,11 @@ struct render_until_options {
 
 enum class until_status { reached, unreachable, out_of_work, cancelled, broken };
 
-/// `reached`: `certificate` is certified. `unreachable`: the error falls towards a floor above the target, so other
-/// settings are needed; or the noise of the probes stays heavy-tailed, so that no claim can be made by them.
-/// `out_of_work`: `most_work` is done, or some sixty claims failed. `broken`: the picture has pixels that are infinite
-/// or NaN, or the probes gave such answers or lost light to broken ones of their host.
+/// `reached`: `certificate` is certified. `unreachable`: the error falls towards a floor above the target, or so near
+/// it that `most_probes` do not tell it from one, so other settings are needed; or the noise of the probes stays
+/// heavy-tailed, so that no claim can be made by them. `out_of_work`: `most_work` is done, or some sixty claims failed.
+/// `broken`: the picture has pixels that are infinite or NaN, or the probes gave such answers or lost light to broken
+/// ones of their host.
 struct until_result {
     until_status status{until_status::out_of_work};
     audit_result certificate{};  ///< of the last claim; its confidence is that claim's own, as by `share_of_miss`

@@ -101,10 +101,8 @@ public:
     /// goes.
     template <Probe P, Executor E>
     bool gives_up(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
-        while (target_is_excluded() && sample_->slow() && !blunt_ && is_patient()) {
-            sharpen(noise_ / 2, picture, probe, work, run);
-        }
-        return target_is_excluded() || is_blinded(picture, probe, work, run);
+        sharpen_slow([&] { return target_is_excluded(); }, picture, probe, work, run);
+        return target_is_excluded() || is_blinded(picture, probe, work, run) || is_stuck(picture, probe, work, run);
     }
 
     /// Whether so many claims failed that what may be wrong by another is nothing.
@@ -154,6 +152,15 @@ private:
         blunt_ = blunt_ || (!sample_->heavy_tailed() && noise_ > before * std::pow(noise / before, 0.25));
     }
 
+    /// Sharpens probes whose noise falls slowly while that is what makes `it_seems` so, as far as patience goes.
+    template <typename Seems, Probe P, Executor E>
+    void sharpen_slow(const Seems& it_seems, const audited_picture<T>& picture, const P& probe, double work,
+                      const E& run) {
+        while (it_seems() && sample_->slow() && !blunt_ && is_patient()) {
+            sharpen(noise_ / 2, picture, probe, work, run);
+        }
+    }
+
     /// Draws more probes until there are `count`.
     template <Probe P, Executor E>
     void grow(std::size_t count, const audited_picture<T>& picture, const P& probe, double work, const E& run) {
@@ -169,6 +176,38 @@ private:
         if (!claiming_ || !sample_->heavy_tailed() || may_be_sharper()) { return false; }
         grow(options_.audit.probes, picture, probe, work, run);
         return sample_->heavy_tailed() && !may_be_sharper();
+    }
+
+    /// Whether the picture comes so near the target, and no nearer, that not even the best probes certify it: four
+    /// times the work changed nothing, nor did the best probes, nor sixteen times the work.
+    template <Probe P, Executor E>
+    bool is_stuck(const audited_picture<T>& picture, const P& probe, double work, const E& run) {
+        if (!seems_out_of_reach(work)) { return false; }
+        stuck_at_ = std::min(stuck_at_, work);
+        const claim_outlook known = outlook(work);
+        if (work < 4 * stuck_at_ || probes_cost(known, best_probes(known)) > 0.5 * work) { return false; }
+        sharpen_slow([&] { return seems_out_of_reach(work); }, picture, probe, work, run);
+        if (!sample_->slow()) {
+            if (noise_ > options_.least_noise && may_be_sharper()) {
+                sharpen(options_.least_noise, picture, probe, work, run);
+            }
+            grow(options_.most_probes, picture, probe, work, run);
+        }
+        if (target_is_excluded()) { return true; }
+        return seems_out_of_reach(work) && work >= 16 * stuck_at_;
+    }
+
+    /// Whether not even the best probes would certify what the error falls to. Forgets when it began once it is not so.
+    bool seems_out_of_reach(double work) {
+        const claim_outlook known = outlook(work);
+        const bool seems = distinct_ >= 4 && known.seen * known.decay.floor >
+                                                 certifiable_error(known, best_probes(known), known.z.front());
+        if (!seems) { stuck_at_ = std::numeric_limits<double>::infinity(); }
+        return seems;
+    }
+
+    [[nodiscard]] static claim_plan best_probes(const claim_outlook& known) {
+        return {known.work, known.most_probes, std::min(known.noise, known.least_noise)};
     }
 
     /// Whether the measurements exclude every floor at or below the target. All are made by the same probes.
@@ -272,6 +311,7 @@ private:
     bool claiming_{false};
     bool broken_{false};
     std::size_t claims_{0};
+    double stuck_at_{std::numeric_limits<double>::infinity()};  // work at which `is_stuck` began to seem so
 };
 
 }  // namespace aglow::detail
