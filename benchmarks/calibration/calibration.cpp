@@ -1,14 +1,20 @@
 // Do the statements of an audit hold as often as they say? For scenes × integrators: hundreds of certificates, each
 // from probes of its own, against the truth; and pictures that are wrong on purpose and must not be certified.
+#include <charconv>
+#include <concepts>
 #include <cstdio>
-#include <cstdlib>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <aglow/report/quantiles.hpp>
 #include <aglow/report/running_mean.hpp>
 
 #include "case.hpp"
+#include "common/command_line.hpp"
 #include "stop_rule.hpp"
 #include "whole_pictures.hpp"
 
@@ -197,60 +203,115 @@ struct job {
     std::size_t last{std::size(methods)};
 };
 
-void help(const effort& e) {
-    std::printf(
-        "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--pool=N] [--certificates=N] [--method=N]\n"
-        "       [--target=X] [--noise=X] [--class-probes=N] [--budget=N] [--bounded] [--width=N]\n"
-        "       [--probes=guided|path] [--no-coverage] [--no-controls] [--no-trials] [--whole]\n"
-        "Percentages of %zu certificates at nominal 95 %%: error bars by kind of pixel; statements on the energy, the\n"
-        "mean relative error and its 95 %% quantile, and how far above the truth they are; false certificates, at a\n"
-        "target just below the true error where none is told. Then pictures that are wrong on purpose, and pictures\n"
-        "rendered until they are certified, beside an oracle that knows their error, with probes weighed against\n"
-        "pictures of --width. These are small ones too, or with --whole of that width: then their truth is known at\n"
-        "%zu pixels drawn at random. Probes are the renderer's, guided where light comes over mirrors, or all plain\n"
-        "paths.\n",
-        e.certificates, e.truths);
+std::string usage() {
+    return "usage: calibration [SCENE ...] [--smoke | --full] [--pixels=N] [--pool=N] [--certificates=N] [--method=N]\n"
+           "       [--target=X] [--noise=X] [--class-probes=N] [--budget=N] [--bounded] [--width=N]\n"
+           "       [--probes=guided|path] [--no-coverage] [--no-controls] [--no-trials] [--whole]\n"
+           "Percentages of " +
+           std::to_string(effort{}.certificates) +
+           " certificates at nominal 95 %: error bars by kind of pixel; statements on the energy, the\n"
+           "mean relative error and its 95 % quantile, and how far above the truth they are; false certificates, at\n"
+           "a target just below the true error where none is told. Then pictures that are wrong on purpose, and\n"
+           "pictures rendered until they are certified, beside an oracle that knows their error, with probes weighed\n"
+           "against pictures of --width. These are small ones too, or with --whole of that width: then their truth\n"
+           "is known at " +
+           std::to_string(effort{}.truths) +
+           " pixels drawn at random. Probes are the renderer's, guided where light comes over\n"
+           "mirrors, or all plain paths.\n";
 }
 
-/// Whether `argument` was `name` and a number not below 0, which is put into `value`.
-template <typename T>
-bool take(const std::string& argument, const std::string& name, T& value) {
-    if (argument.rfind(name + '=', 0) != 0) { return false; }
-    const char* const digits = argument.c_str() + name.size() + 1;
-    char* end = nullptr;
-    const double number = std::strtod(digits, &end);
-    value = static_cast<T>(number);
-    return end != digits && *end == '\0' && number >= 0;
+/// The text after "`name`=", where `argument` is that option.
+std::optional<std::string_view> value_of(std::string_view argument, std::string_view name) {
+    const bool is_it = argument.starts_with(name) && argument.substr(name.size()).starts_with('=');
+    return is_it ? std::optional{argument.substr(name.size() + 1)} : std::nullopt;
 }
 
-bool take(const std::string& argument, job& what) {
+/// Whether `argument` was `name` and a whole number, which is put into `value`; throws for one out of range.
+template <std::unsigned_integral T>
+bool take(std::string_view argument, std::string_view name, T& value, std::size_t least, std::size_t most) {
+    const auto text = value_of(argument, name);
+    if (text) { value = static_cast<T>(command_line::whole(name, *text, least, most)); }
+    return text.has_value();
+}
+
+/// The same for a number above 0; where 1 is 100 %, none needs more than 100.
+bool take(std::string_view argument, std::string_view name, double& value) {
+    const auto text = value_of(argument, name);
+    if (!text) { return false; }
+    const auto [end, wrong] = std::from_chars(text->data(), text->data() + text->size(), value);
+    if (wrong != std::errc{} || end != text->data() + text->size() || !(value > 0 && value <= 100)) {
+        throw std::invalid_argument(std::string{name} + " wants a number above 0, up to 100, not \"" +
+                                    std::string{*text} + '"');
+    }
+    return true;
+}
+
+bool take_number(std::string_view argument, job& what) {
     effort& e = what.how;
-    if (argument == "--smoke") {
-        e = {.pixels = 24, .pool = 1024, .certificates = 3};
-        what.scenes = {"cornell-diffuse"};
-    } else if (argument == "--full") {
-        e = {.pixels = 96, .pool = 65536, .certificates = 1000};
-    } else if (argument == "--no-coverage") {
+    if (take(argument, "--method", what.first, 0, std::size(methods) - 1)) {
+        what.last = what.first + 1;
+        return true;
+    }
+    constexpr std::size_t many = 1'000'000'000;
+    return take(argument, "--pixels", e.pixels, 8, 4096) || take(argument, "--pool", e.pool, 256, many) ||
+           take(argument, "--certificates", e.certificates, 1, many) || take(argument, "--target", e.target) ||
+           take(argument, "--noise", e.noise) || take(argument, "--class-probes", e.class_probes, 0, many) ||
+           take(argument, "--budget", e.budget, 0, many) || take(argument, "--width", e.width, 8, 16384);
+}
+
+bool take(std::string_view argument, job& what) {
+    if (argument == "--no-coverage") {
         what.coverage = false;
     } else if (argument == "--no-controls") {
         what.controls = false;
     } else if (argument == "--no-trials") {
         what.trials = false;
     } else if (argument == "--probes=guided" || argument == "--probes=path") {
-        e.probes = argument == "--probes=path" ? host::probe_kind::path : host::probe_kind::guided;
+        what.how.probes = argument == "--probes=path" ? host::probe_kind::path : host::probe_kind::guided;
     } else if (argument == "--whole") {
-        e.whole = true;
+        what.how.whole = true;
     } else if (argument == "--bounded") {
-        e.bounded = true;
-    } else if (take(argument, "--method", what.first)) {
-        what.last = what.first + 1;
+        what.how.bounded = true;
     } else {
-        return take(argument, "--pixels", e.pixels) || take(argument, "--pool", e.pool) ||
-               take(argument, "--certificates", e.certificates) || take(argument, "--target", e.target) ||
-               take(argument, "--noise", e.noise) || take(argument, "--class-probes", e.class_probes) ||
-               take(argument, "--budget", e.budget) || take(argument, "--width", e.width);
+        return take_number(argument, what);
     }
     return true;
+}
+
+/// What --smoke and --full stand for. Looked for before all else: what they set, an option before them may change too.
+job preset(command_line::words asked) {
+    bool smoke = false;
+    bool full = false;
+    while (asked.next()) {
+        smoke = smoke || asked.is("--smoke");
+        full = full || asked.is("--full");
+    }
+    if (smoke && full) { throw std::invalid_argument("--full and --smoke exclude each other"); }
+    job what;
+    if (smoke) {
+        what.how = {.pixels = 24, .pool = 1024, .certificates = 3};
+        what.scenes = {"cornell-diffuse"};
+    }
+    if (full) { what.how = {.pixels = 96, .pool = 65536, .certificates = 1000}; }
+    return what;
+}
+
+job job_of(command_line::words& asked) {
+    job what = preset(asked);
+    std::vector<std::string> named;
+    while (asked.next()) {
+        if (asked.is("--smoke") || asked.is("--full")) { continue; }
+        if (!asked.is_option()) {
+            if (!host::scenes::find<float>(asked.word())) {
+                throw std::invalid_argument("no scene called " + asked.word());
+            }
+            named.push_back(asked.word());
+        } else if (!take(asked.word(), what)) {
+            asked.refuse();
+        }
+    }
+    if (!named.empty()) { what.scenes = named; }
+    return what;
 }
 
 template <typename Known>
@@ -266,39 +327,19 @@ void work(const known_scene& scene, const job& what) {
     if (what.trials && !what.how.whole) { try_to_stop(scene, what); }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    job what;
-    std::vector<std::string> chosen;
-    for (int i = 1; i < argc; ++i) {
-        const std::string argument = argv[i];
-        if (argument == "--help" || argument == "-h") {
-            help(what.how);
-            return 0;
-        }
-        if (argument.rfind("--", 0) != 0) {
-            chosen.push_back(argument);
-        } else if (!take(argument, what)) {
-            std::fprintf(stderr, "calibration: no option %s; --help tells of those there are\n", argument.c_str());
-            return 2;
-        }
-    }
-    if (!chosen.empty()) { what.scenes = chosen; }
-    if (what.last > std::size(methods)) {
-        help(what.how);
-        return 2;
-    }
-    for (const std::string& name : what.scenes) {
-        if (!host::scenes::find<float>(name)) {
-            std::fprintf(stderr, "calibration: no scene called %s\n", name.c_str());
-            return 2;
-        }
-    }
+int benchmark(const job& what) {
     if (what.coverage) { print_head(); }
     for (const std::string& name : what.scenes) {
         const auto scene = *host::scenes::find<float>(name);
         if (what.coverage || what.controls || !what.how.whole) { work(known_scene{scene, what.how}, what); }
         if (what.trials && what.how.whole) { try_to_stop(whole_scene{scene, what.how}, what); }
     }
+    return 0;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    return command_line::run(count, arguments, usage(),
+                             [](command_line::words& asked) { return benchmark(job_of(asked)); });
 }

@@ -26,6 +26,7 @@
 #include "error_vs_time/provenance.hpp"
 #include "error_vs_time/records.hpp"
 #include "error_vs_time/report_page.hpp"
+#include "error_vs_time/seeds.hpp"
 #include "error_vs_time/truth.hpp"
 #include "error_vs_time/work_left.hpp"
 
@@ -66,12 +67,9 @@ struct rung {
     std::size_t step;
     bool last;  ///< of its method: the last picture is shown and audited
 
-    [[nodiscard]] bool is_of(const std::string& its_scene, const std::string& its_method) const {
-        return scene.name == its_scene && method.name == its_method;
-    }
     template <typename Note>
     [[nodiscard]] bool is_of(const Note& note) const {
-        return is_of(note.scene, note.method) && note.budget == step;
+        return scene.name == note.scene && method.name == note.method && note.budget == step;
     }
 };
 
@@ -128,17 +126,20 @@ private:
         return ladders_.front().steps.front().cost / 4 * 2 * options_.reference_samples;
     }
     [[nodiscard]] std::filesystem::path reference_file(const description& scene) const {
-        return options_.output / "pictures" / (scene.name + "-reference.exr");
+        return kept_file(scene, options_.size, options_.reference_samples, options_.output / "pictures");
     }
-    [[nodiscard]] std::filesystem::path picture_file(const std::string& scene, std::string method) const {
-        std::replace(method.begin(), method.end(), ' ', '-');
-        return options_.output / "pictures" / (scene + '-' + method + ".exr");
+    /// Named by its step too: the last of a short study is not that of a long one.
+    [[nodiscard]] std::filesystem::path picture_file(const rung& r) const {
+        std::string name = r.scene.name + '-' + r.method.name + "-step-" + std::to_string(r.step + 1) + ".exr";
+        std::replace(name.begin(), name.end(), ' ', '-');
+        return options_.output / "pictures" / name;
     }
 
     truth made_truth(const description& scene) {
-        const bool new_one = must_be_made(scene, options_.size, reference_file(scene));
+        const std::filesystem::path kept = reference_file(scene);
+        const bool new_one = must_be_made(scene, options_.size, kept);
         const auto begun = work_left::clock::now();
-        truth known = truth_of(scene, options_.size, options_.reference_samples, reference_file(scene));
+        truth known = truth_of(scene, options_.size, options_.reference_samples, kept);
         if (new_one) { left_.did(reference_cost(), since(begun)); }
         return known;
     }
@@ -167,7 +168,7 @@ private:
             std::find_if(earlier_.parts.begin(), earlier_.parts.end(), [&](const parts_note& p) { return r.is_of(p); });
         if (runs_known(r) != options_.seeds || parts == earlier_.parts.end()) { return false; }
         const auto audit = std::find_if(earlier_.audits.begin(), earlier_.audits.end(),
-                                        [&](const audit_note& a) { return r.is_of(a.scene, a.method); });
+                                        [&](const audit_note& a) { return r.is_of(a); });
         std::vector<float> picture;
         if (r.last) {
             picture = kept_picture(r);
@@ -185,7 +186,7 @@ private:
     /// The picture that an earlier study showed; empty where it is not there whole.
     [[nodiscard]] std::vector<float> kept_picture(const rung& r) const {
         try {
-            const host::picture image = host::read_exr(picture_file(r.scene.name, r.method.name));
+            const host::picture image = host::read_exr(picture_file(r));
             if (image.width == options_.size && image.height == options_.size) { return values_of(image); }
         } catch (const std::runtime_error&) { return {}; }
         return {};
@@ -200,8 +201,7 @@ private:
             std::copy_if(earlier_.runs.begin(), earlier_.runs.end(), std::back_inserter(all.runs), has);
             std::copy_if(earlier_.parts.begin(), earlier_.parts.end(), std::back_inserter(all.parts), has);
             if (!r.last) { continue; }
-            std::copy_if(earlier_.audits.begin(), earlier_.audits.end(), std::back_inserter(all.audits),
-                         [&](const audit_note& a) { return r.is_of(a.scene, a.method); });
+            std::copy_if(earlier_.audits.begin(), earlier_.audits.end(), std::back_inserter(all.audits), has);
         }
         return all;
     }
@@ -216,14 +216,14 @@ private:
             return;
         }
         aglow::bias_variance parts;
-        for (std::uint64_t seed = 1; seed <= options_.seeds; ++seed) {
+        for (std::size_t i = 0; i < options_.seeds; ++i) {
             tell(++done, r);
             const auto begun = work_left::clock::now();
-            made_run made = make_run(r.scene, r.method, r.step, seed, options_.size);
+            made_run made = make_run(r.scene, r.method, r.step, first_seed + i, options_.size);
             made.note.error = known.compare(made.values);
             parts.add(view(made.values));
             study_.runs.push_back(made.note);
-            if (r.last && seed == options_.seeds) { finish(r, made, known); }
+            if (r.last && i + 1 == options_.seeds) { finish(r, made, known); }
             left_.did(cost(r), since(begun));
         }
         study_.parts.push_back(
@@ -236,8 +236,7 @@ private:
         study_.audits.push_back(audit_run(r.scene, made, 0.05, known.mean(), options_.size));
         host::picture guess{options_.size, options_.size};
         for (std::size_t i = 0; i < made.guess.size(); ++i) { guess.pixels[i] = aglow::vec3<float>{made.guess[i]}; }
-        host::write_exr(picture_file(r.scene.name, r.method.name),
-                        {{"", picture_of(made.values, options_.size)}, {"guess", guess}});
+        host::write_exr(picture_file(r), {{"", picture_of(made.values, options_.size)}, {"guess", guess}});
         show_run(made.note, made.values, known);
     }
 

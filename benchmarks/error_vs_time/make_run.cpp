@@ -23,6 +23,7 @@
 
 #include "common/counted_scene.hpp"
 #include "common/phase_name.hpp"
+#include "error_vs_time/seeds.hpp"
 
 namespace error_vs_time {
 
@@ -242,8 +243,8 @@ reference_halves path_traced(const host::scene_description<float>& scene, std::u
                         {.samples = samples, .seed = seed, .progress = told}, aglow::own_threads{});
             return aglow::audited_film{film}.values();
         };
-        std::vector<float> first = half(90001, 0);
-        return reference_halves{std::move(first), half(90002, 0.5)};
+        std::vector<float> first = half(reference_seeds[0], 0);
+        return reference_halves{std::move(first), half(reference_seeds[1], 0.5)};
     });
 }
 
@@ -256,7 +257,7 @@ audit_note audit_run(const host::scene_description<float>& scene, const made_run
         const double before = cpu_seconds();
         const aglow::audit_result stated =
             aglow::audit(picture, aglow::pixel_probe{eye, tracer, size}, {.target = target, .seed = run.note.seed});
-        audit_note note{.scene = run.note.scene, .method = run.note.method};
+        audit_note note{.scene = run.note.scene, .method = run.note.method, .budget = run.note.budget};
         note.seconds = cpu_seconds() - before;
         note.render_seconds = run.note.cpu_seconds;
         note.status = aglow::words(stated.status);

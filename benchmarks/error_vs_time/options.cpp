@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/command_line.hpp"
+#include "error_vs_time/seeds.hpp"
 
 namespace error_vs_time {
 
@@ -91,7 +92,7 @@ options parse(std::span<const std::string_view> words) {
             result.size = command_line::whole(word, value(), 8, 4096);
             size_named = true;
         } else if (word == "--seeds") {
-            result.seeds = command_line::whole(word, value(), 2, 1000);
+            result.seeds = command_line::whole(word, value(), 2, most_seeds);
             seeds_named = true;
         } else if (word == "--relmse") {
             result.relmse_targets = errors(word, value());

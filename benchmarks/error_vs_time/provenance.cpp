@@ -1,7 +1,5 @@
 #include "error_vs_time/provenance.hpp"
 
-#include <cstdint>
-#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <iterator>
@@ -9,6 +7,8 @@
 #include <aglow/core/version.hpp>
 
 #include "error_vs_time/commit.hpp"
+#include "error_vs_time/fingerprint.hpp"
+#include "error_vs_time/seeds.hpp"
 
 namespace error_vs_time {
 
@@ -41,16 +41,19 @@ std::string host_load() {
     return minute.empty() ? "unknown" : minute;
 }
 
-/// Tells one build of this program from another (FNV-1a of its file): a commit does not, while it is being worked on.
-std::string fingerprint() {
+/// Tells one build of this program from another: a commit does not, while it is being worked on.
+std::string own_fingerprint() {
     std::ifstream own{"/proc/self/exe", std::ios::binary};
-    std::uint64_t sum = 0xcbf29ce484222325u;
-    for (std::istreambuf_iterator<char> at{own}, end; at != end; ++at) {
-        sum = (sum ^ static_cast<unsigned char>(*at)) * 0x100000001b3u;
-    }
-    char text[20];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(sum));
-    return text;
+    fingerprint sum;
+    for (std::istreambuf_iterator<char> at{own}, end; at != end; ++at) { sum.add(static_cast<unsigned char>(*at)); }
+    return sum.digits();
+}
+
+/// "1001 … 1003; 90001 and 90002 for references that were made here"
+std::string told_seeds(std::size_t count) {
+    return std::to_string(first_seed) + " … " + std::to_string(first_seed + count - 1) + "; " +
+           std::to_string(reference_seeds[0]) + " and " + std::to_string(reference_seeds[1]) +
+           " for references that were made here";
 }
 
 std::string library() {
@@ -71,12 +74,12 @@ text_pairs provenance(const options& asked, const std::vector<std::string_view>&
     for (const std::string_view word : words) { line += ' ' + std::string{word}; }
     return {{"library", library()},
             {"commit", commit},
-            {"fingerprint of the program", fingerprint()},
+            {"fingerprint of the program", own_fingerprint()},
             {"compiler", compiler},
             {"flags", AGLOW_COMPILED_WITH},
             {"processor", first_line_of("/proc/cpuinfo", "model name")},
             {"threads", "1; 2 or more for references that were made here"},
-            {"seeds", "1 … " + std::to_string(asked.seeds) + "; 90001 and 90002 for references that were made here"},
+            {"seeds", told_seeds(asked.seeds)},
             {"size", side + " x " + side},
             {"samples of references made here", "2 x " + std::to_string(asked.reference_samples) + " a pixel"},
             {command, line},

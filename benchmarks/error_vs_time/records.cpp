@@ -115,10 +115,19 @@ json as_json(const parts_note& p) {
 }
 
 json as_json(const audit_note& a) {
-    return json::object{{"scene", a.scene},           {"method", a.method},     {"status", a.status},
-                        {"statement", a.statement},   {"target", a.target},     {"bound", a.bound},
-                        {"true_error", a.true_error}, {"bias_low", a.bias_low}, {"bias_high", a.bias_high},
-                        {"true_bias", a.true_bias},   {"seconds", a.seconds},   {"render_seconds", a.render_seconds}};
+    return json::object{{"scene", a.scene},
+                        {"method", a.method},
+                        {"budget", a.budget},
+                        {"status", a.status},
+                        {"statement", a.statement},
+                        {"target", a.target},
+                        {"bound", a.bound},
+                        {"true_error", a.true_error},
+                        {"bias_low", a.bias_low},
+                        {"bias_high", a.bias_high},
+                        {"true_bias", a.true_bias},
+                        {"seconds", a.seconds},
+                        {"render_seconds", a.render_seconds}};
 }
 
 template <typename Notes>
@@ -172,9 +181,10 @@ parts_note parts_from(const json& j) {
 }
 
 audit_note audit_from(const json& j) {
-    return {j["scene"].text(),       j["method"].text(),      j["status"].text(),       j["statement"].text(),
-            j["target"].number(),    j["bound"].number(),     j["true_error"].number(), j["bias_low"].number(),
-            j["bias_high"].number(), j["true_bias"].number(), j["seconds"].number(),    j["render_seconds"].number()};
+    return {j["scene"].text(),           j["method"].text(),      size_of(j["budget"]),    j["status"].text(),
+            j["statement"].text(),       j["target"].number(),    j["bound"].number(),     j["true_error"].number(),
+            j["bias_low"].number(),      j["bias_high"].number(), j["true_bias"].number(), j["seconds"].number(),
+            j["render_seconds"].number()};
 }
 
 }  // namespace

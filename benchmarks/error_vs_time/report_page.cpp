@@ -1,6 +1,7 @@
 #include "error_vs_time/report_page.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <aglow/report/image_error.hpp>
@@ -87,11 +88,9 @@ plot curves(const study& all, const std::string& scene, const metric& what) {
 
 std::string plots(const study& all, const std::string& scene) {
     return "<div class=\"plots\">" + svg(curves(all, scene, metrics()[0])) + svg(curves(all, scene, metrics()[1])) +
-           "</div>\n<p class=\"soft\">Curves are medians over seeds, bands reach from the 5 % to the 95 % quantile. "
-           "Dotted lines "
-           "are the targets of the tables. On logarithmic axes independent samples fall as MAPE ~ t<sup>−½</sup> and "
-           "relMSE ~ "
-           "t<sup>−1</sup>.</p>\n";
+           "</div>\n<p class=\"soft\">Curves are medians over seeds, bands reach from the 5 % to the 95 % quantile of "
+           "the seeds. Dotted lines are the targets of the tables. On logarithmic axes independent samples fall as "
+           "MAPE ~ t<sup>−½</sup> and relMSE ~ t<sup>−1</sup>.</p>\n";
 }
 
 std::string figure(const picture_note& p, std::size_t index) {
@@ -176,19 +175,31 @@ std::string about(const study& all, const scene_note& scene) {
     return out + ".</span></p>\n" + warning(all, scene);
 }
 
-std::string reading(const study& all) {
+/// What stands in the tables' brackets, and how far it is to be trusted.
+std::string about_intervals(std::size_t seeds) {
+    if (seeds >= seeds_for_95) {
+        return "Intervals are 95 % bootstrap intervals over seeds; below about 20 seeds they hold less.";
+    }
+    if (seeds < 2) { return {}; }
+    const double held = 1 - std::pow(2.0, 1 - static_cast<double>(seeds));
+    return "In brackets are the least and the most of " + std::to_string(seeds) +
+           " seeds, between which the median of a time lies with a probability of " + rounded(100 * held) +
+           " %: 95 % take " + std::to_string(seeds_for_95) + " seeds or more.";
+}
+
+std::string reading(const study& all, const std::string& scene) {
     return "<p class=\"soft\">Times are interpolated between a seed's neighbouring runs, on logarithmic axes; &lt; and "
            "&gt; "
            "are limits, where a method was there from its first run or not by its last. ≈ carries " +
            escaped(all.baseline) +
            " on beyond its last run, as fast as its errors fell or as those of independent samples do, whichever is "
-           "faster. Intervals are 95 % bootstrap intervals over seeds; with three seeds they are hardly more than the "
-           "range.</p>\n";
+           "faster. " +
+           about_intervals(seeds_in(all, scene)) + "</p>\n";
 }
 
 std::string section(const study& all, const scene_note& scene) {
     const std::string& name = scene.name;
-    std::string out = about(all, scene) + plots(all, name) + "<h3>Time to an error</h3>" + reading(all);
+    std::string out = about(all, scene) + plots(all, name) + "<h3>Time to an error</h3>" + reading(all, name);
     for (const metric& what : metrics()) {
         if (targets_of(all, what).empty()) { continue; }
         out += html(times_to_targets(all, name, what)) + html(speed_ups(all, name, what));

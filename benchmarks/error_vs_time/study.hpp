@@ -57,6 +57,7 @@ struct parts_note {
 struct audit_note {
     std::string scene{};
     std::string method{};
+    std::size_t budget{0};
     std::string status{};
     std::string statement{};
     double target{0};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -81,7 +82,40 @@ double carried_to(const seed_curve& points, double target, double exponent) {
     return found.time * std::pow(target / points.errors.back(), 1 / exponent);
 }
 
+/// The median, with its bootstrap interval, or the least and the most of too few for one.
+aglow::interval middle_and_spread(const std::vector<double>& values) {
+    if (values.size() < seeds_for_95) {
+        const auto [least, most] = std::minmax_element(values.begin(), values.end());
+        return {aglow::median(values), *least, *most};
+    }
+    return aglow::bootstrap(values.size(), [&](std::span<const std::size_t> indices) {
+        return aglow::median(aglow::pick(values, indices));
+    });
+}
+
+/// The ratio of the medians of two independent lists, with its interval in the same way.
+aglow::interval ratio_and_spread(const std::vector<double>& above, const std::vector<double>& below) {
+    if (std::min(above.size(), below.size()) >= seeds_for_95) {
+        return aglow::bootstrap_ratio(above, below, aglow::median);
+    }
+    const auto [least_above, most_above] = std::minmax_element(above.begin(), above.end());
+    const auto [least_below, most_below] = std::minmax_element(below.begin(), below.end());
+    return {aglow::median(above) / aglow::median(below), *least_above / *most_below, *most_above / *least_below};
+}
+
 }  // namespace
+
+std::size_t seeds_in(const study& all, const std::string& scene) {
+    std::map<std::string, std::set<std::uint64_t>> seeds;
+    for (const run_note& run : all.runs) {
+        if (run.scene == scene) { seeds[run.method].insert(run.seed); }
+    }
+    std::size_t fewest = 0;
+    for (const auto& [method, of_method] : seeds) {
+        fewest = fewest == 0 ? of_method.size() : std::min(fewest, of_method.size());
+    }
+    return fewest;
+}
 
 std::vector<aglow::convergence_row> curve(const study& all, const std::string& scene, const std::string& method,
                                           const metric& what) {
@@ -118,9 +152,7 @@ time_to time_to_target(const study& all, const std::string& scene, const std::st
         result.seconds.push_back(c.time);
     }
     result.median.time = aglow::median(result.seconds);
-    result.interval = aglow::bootstrap(result.seconds.size(), [&](std::span<const std::size_t> indices) {
-        return aglow::median(aglow::pick(result.seconds, indices));
-    });
+    result.interval = middle_and_spread(result.seconds);
     return result;
 }
 
@@ -149,9 +181,7 @@ std::optional<speed_up> speed_up_to_target(const study& all, const std::string& 
     const bool no_more = slow.median.when != kind::never && fast.median.when != kind::before;
     if (no_less && no_more) {
         speed_up result{.estimate = ratio};
-        if (slow.interval && fast.interval) {
-            result.interval = aglow::bootstrap_ratio(slow.seconds, fast.seconds, aglow::median);
-        }
+        if (slow.interval && fast.interval) { result.interval = ratio_and_spread(slow.seconds, fast.seconds); }
         return result;
     }
     if (no_more) { return speed_up{.sign = '<', .estimate = ratio}; }
@@ -183,9 +213,7 @@ std::optional<equal_error> at_equal_error(const study& all, const std::string& s
     });
     if (seconds.empty()) { return std::nullopt; }
     result.baseline_seconds = aglow::median(seconds);
-    result.ratio = aglow::bootstrap(ratios.size(), [&](std::span<const std::size_t> indices) {
-        return aglow::median(aglow::pick(ratios, indices));
-    });
+    result.ratio = middle_and_spread(ratios);
     return result;
 }
 

@@ -1,6 +1,7 @@
 // The few numbers that a study comes down to: curves, slopes, times to an error and speed-ups.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,13 @@
 #include "error_vs_time/study.hpp"
 
 namespace error_vs_time {
+
+/// Fewer seeds have no interval of 95 %: the median lies beyond all n of them with a probability of 2^(1−n). Intervals
+/// over fewer reach from the least to the most.
+inline constexpr std::size_t seeds_for_95 = 6;
+
+/// Different seeds of a scene's runs, of the method that has fewest.
+[[nodiscard]] std::size_t seeds_in(const study& all, const std::string& scene);
 
 /// One row a budget: medians over seeds and the 5 to 95 % band.
 [[nodiscard]] std::vector<aglow::convergence_row> curve(const study& all, const std::string& scene,
@@ -24,7 +32,7 @@ namespace error_vs_time {
 struct time_to {
     aglow::crossing median{};                   ///< `before` or `never` where the median seed's curve does not cross
     std::vector<double> seconds{};              ///< of every seed, where all of them cross
-    std::optional<aglow::interval> interval{};  ///< bootstrap over seeds, where all of them cross
+    std::optional<aglow::interval> interval{};  ///< over seeds, where all of them cross
 };
 
 [[nodiscard]] time_to time_to_target(const study& all, const std::string& scene, const std::string& method,
@@ -36,8 +44,8 @@ struct time_to {
 [[nodiscard]] std::optional<double> carried_on(const study& all, const std::string& scene, const metric& what,
                                                double target);
 
-/// How many times faster than the baseline a method gets to an error, with its bootstrap interval over seeds. Where one
-/// of the two does not cross, the estimate is a limit and `sign` says which: '>' at least, '<' at most.
+/// How many times faster than the baseline a method gets to an error, with its interval over seeds. Where one of the
+/// two does not cross, the estimate is a limit and `sign` says which: '>' at least, '<' at most.
 struct speed_up {
     char sign{'='};
     double estimate{0};
@@ -53,7 +61,7 @@ struct speed_up {
 struct equal_error {
     char sign{'='};  ///< '~' where the baseline is carried on in a seed or more, '<' where it was better from the start
     double baseline_seconds{0};  ///< median over seeds
-    aglow::interval ratio{};     ///< baseline's over the method's time: median and bootstrap interval over seeds
+    aglow::interval ratio{};     ///< baseline's over the method's time: median and interval over seeds
 };
 
 /// Nothing for the baseline itself, or where it shares no seed with the step.

@@ -22,6 +22,12 @@ std::string target_name(const metric& what, double target) {
 
 std::string between(double low, double high) { return " (" + rounded(low) + " … " + rounded(high) + ")"; }
 
+/// What stands in brackets.
+std::string interval_name(const study& all, const std::string& scene) {
+    const std::size_t seeds = seeds_in(all, scene);
+    return seeds < seeds_for_95 ? "least to most of " + std::to_string(seeds) + " seeds" : "95 % bootstrap interval";
+}
+
 std::string told(const time_to& time, const std::optional<double>& longer) {
     using kind = aglow::crossing::kind;
     if (time.median.when == kind::before) { return "< " + rounded(time.median.time); }
@@ -125,7 +131,8 @@ table by_name(const study& all, const std::string& scene, number_pairs run_note:
 }  // namespace
 
 table times_to_targets(const study& all, const std::string& scene, const metric& what) {
-    table result{.caption = std::string{"CPU seconds to "} + what.name + ", median over seeds and 95 % interval"};
+    table result{.caption = std::string{"CPU seconds to "} + what.name + ", median over seeds and " +
+                            interval_name(all, scene)};
     result.head = {"method"};
     for (const double target : targets_of(all, what)) { result.head.push_back(target_name(what, target)); }
     for (const std::string& method : methods_in(all, scene)) {
@@ -140,7 +147,8 @@ table times_to_targets(const study& all, const std::string& scene, const metric&
 }
 
 table speed_ups(const study& all, const std::string& scene, const metric& what) {
-    table result{.caption = "Times faster than " + all.baseline + " to " + what.name + ", and 95 % interval"};
+    table result{.caption =
+                     "Times faster than " + all.baseline + " to " + what.name + ", and " + interval_name(all, scene)};
     result.head = {"method"};
     for (const double target : targets_of(all, what)) { result.head.push_back(target_name(what, target)); }
     for (const std::string& method : methods_in(all, scene)) {
@@ -158,9 +166,10 @@ table steps(const study& all, const std::string& scene) {
     const metric& mape = metrics()[0];
     const metric& relmse = metrics()[1];
     table result{.caption = "Every step, medians over seeds, beside what " + all.baseline +
-                            " takes to the same relMSE (≈ where carried on beyond its last run)",
+                            " takes to the same relMSE (≈ where carried on beyond its last run), and " +
+                            interval_name(all, scene),
                  .words = 2};
-    result.head = {"method",      "settings", "CPU s", "MAPE", "relMSE", "5 … 95 %", all.baseline + " takes",
+    result.head = {"method",      "settings", "CPU s", "MAPE", "relMSE", "5 … 95 % of seeds", all.baseline + " takes",
                    "times faster"};
     for (const std::string& method : methods_in(all, scene)) {
         const auto relative = curve(all, scene, method, mape);

@@ -8,10 +8,10 @@
 
 namespace error_vs_time {
 
-/// CPU seconds to the metric's targets, median over seeds and 95 % bootstrap interval; the baseline's also carried on.
+/// CPU seconds to the metric's targets, median over seeds and their interval; the baseline's also carried on.
 [[nodiscard]] table times_to_targets(const study& all, const std::string& scene, const metric& what);
 
-/// Speed-up over the baseline at the metric's targets, with its bootstrap interval.
+/// Speed-up over the baseline at the metric's targets, with its interval over seeds.
 [[nodiscard]] table speed_ups(const study& all, const std::string& scene, const metric& what);
 
 /// Every step of every method, beside the baseline's time to the same relMSE.

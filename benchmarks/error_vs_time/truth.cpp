@@ -1,9 +1,12 @@
 #include "error_vs_time/truth.hpp"
 
+#include <array>
+#include <bit>
 #include <optional>
 
 #include "common/image_io.hpp"
 #include "common/progress.hpp"
+#include "error_vs_time/fingerprint.hpp"
 #include "error_vs_time/make_run.hpp"
 
 namespace error_vs_time {
@@ -42,6 +45,18 @@ halves made(const host::scene_description<float>& scene, std::size_t size, std::
     return {picture_of(values.first, size), picture_of(values.second, size)};
 }
 
+/// Tells scenes of one name, path tracers and seeds apart, by a small picture of theirs.
+std::string making(const host::scene_description<float>& scene) {
+    const reference_halves small = path_traced(scene, 16, 32);
+    fingerprint sum;
+    for (const auto* half : {&small.first, &small.second}) {
+        for (const float x : *half) {
+            for (const unsigned char byte : std::bit_cast<std::array<unsigned char, sizeof x>>(x)) { sum.add(byte); }
+        }
+    }
+    return sum.digits();
+}
+
 void tell_noise(truth& known) {
     const aglow::image_error noise = known.compare(known.first);
     known.note.reference = "own path tracer, two halves";
@@ -78,6 +93,12 @@ host::picture picture_of(const std::vector<float>& values, std::size_t size) {
         image.pixels[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
     }
     return image;
+}
+
+std::filesystem::path kept_file(const host::scene_description<float>& scene, std::size_t size, std::uint32_t samples,
+                                const std::filesystem::path& folder) {
+    return folder / (scene.name + "-reference-" + std::to_string(size) + "-2x" + std::to_string(samples) + '-' +
+                     making(scene) + ".exr");
 }
 
 bool must_be_made(const host::scene_description<float>& scene, std::size_t size, const std::filesystem::path& kept) {

@@ -25,6 +25,11 @@ struct truth {
     [[nodiscard]] aglow::image_error compare(const std::vector<float>& image) const;
 };
 
+/// The file in `folder` for a reference of two times `samples` paths a pixel. Its name tells all that it is made of, so
+/// that none of another making is taken for it.
+[[nodiscard]] std::filesystem::path kept_file(const host::scene_description<float>& scene, std::size_t size,
+                                              std::uint32_t samples, const std::filesystem::path& folder);
+
 /// The reference of a scene, `size` pixels square: the project's own file of that size, or one that was left at `kept`,
 /// or a new one of two times `samples` paths a pixel, which is left there.
 [[nodiscard]] truth truth_of(const host::scene_description<float>& scene, std::size_t size, std::uint32_t samples,

@@ -15,6 +15,7 @@
 #include "error_vs_time/png.hpp"
 #include "error_vs_time/records.hpp"
 #include "error_vs_time/report_page.hpp"
+#include "error_vs_time/seeds.hpp"
 #include "error_vs_time/summary.hpp"
 #include "error_vs_time/tables.hpp"
 #include "error_vs_time/work_left.hpp"
@@ -54,6 +55,32 @@ TEST_CASE("study: the path tracer's slope, its time to an error and the speed-up
     CHECK(ratio->estimate == Approx(path_seconds / map_seconds).epsilon(0.08));
     REQUIRE(ratio->interval);
     CHECK(ratio->interval->contains(path_seconds / map_seconds));
+}
+
+TEST_CASE("study: fewer than six seeds have no interval of 95 %, and tell their least and most as such") {
+    for (const std::uint64_t seeds : {2u, 3u, 5u, 6u}) {
+        CAPTURE(seeds);
+        const study all = synthetic::study(0.05, 1, 1, 0, seeds);
+        CHECK(seeds_in(all, "box") == seeds);
+        const bool enough = seeds >= 6;
+        const std::string range = "least to most of " + std::to_string(seeds) + " seeds";
+        for (const table& t :
+             {times_to_targets(all, "box", mape()), speed_ups(all, "box", mape()), steps(all, "box")}) {
+            CHECK((t.caption.find("95 % bootstrap interval") != std::string::npos) == enough);
+            CHECK((t.caption.find(range) != std::string::npos) == !enough);
+        }
+        CHECK((report_html(all).find("95 % bootstrap intervals") != std::string::npos) == enough);
+        const time_to path = time_to_target(all, "box", "path", mape(), 0.09);
+        const time_to map = time_to_target(all, "box", "photon-map", mape(), 0.09);
+        const auto ratio = speed_up_to_target(all, "box", "photon-map", mape(), 0.09);
+        REQUIRE((path.interval && map.interval && ratio && ratio->interval));
+        if (enough) { continue; }
+        const auto [least, most] = std::minmax_element(path.seconds.begin(), path.seconds.end());
+        CHECK((path.interval->low == *least && path.interval->high == *most));
+        CHECK(ratio->interval->low == path.interval->low / map.interval->high);
+        CHECK(ratio->interval->high == path.interval->high / map.interval->low);
+    }
+    CHECK(report_html(synthetic::study(0.05, 1, 1, 0, 3)).find("a probability of 75 %") != std::string::npos);
 }
 
 TEST_CASE("study: what lies beyond the ends of the curves is told as a limit") {
@@ -175,6 +202,8 @@ TEST_CASE("report.json: a study comes back as it was, seeds of 64 bits included"
     CHECK(again.runs[3].seed == all.runs[3].seed);
     CHECK(again.runs[5].error.relmse == all.runs[5].error.relmse);
     CHECK(again.parts[2].parts.variance == all.parts[2].parts.variance);
+    CHECK(again.audits[1].budget == 6);
+    CHECK(again.audits[1].bound == all.audits[1].bound);
     CHECK(again.relmse_targets == all.relmse_targets);
     CHECK(again.scenes[0].reference_pictures == all.scenes[0].reference_pictures);
     CHECK_THROWS_WITH(read_report("{}"), "not a report of error_vs_time");
@@ -378,6 +407,17 @@ TEST_CASE("gate: what got lost is named, and what else is not alike") {
     CHECK(unlike(before, after) ==
           std::vector<std::string>{"compiler: none before, now another", lost_scene + ": not in the second report"});
     CHECK(unlike(after, before).back() == lost_scene + ": not in the first report");
+}
+
+TEST_CASE("seeds: no picture can have a reference's, however many there are") {
+    using words = std::vector<std::string_view>;
+    const std::string most = std::to_string(most_seeds);
+    const std::string more = std::to_string(most_seeds + 1);
+    CHECK(parse(words{"--seeds", most}).seeds == most_seeds);
+    CHECK_THROWS_AS(parse(words{"--seeds", more}), std::invalid_argument);
+    const auto apart = [](std::uint64_t seed) { return seed < first_seed || seed >= first_seed + most_seeds; };
+    CHECK(std::all_of(std::begin(kept_reference_seeds), std::end(kept_reference_seeds), apart));
+    CHECK(std::all_of(std::begin(reference_seeds), std::end(reference_seeds), apart));
 }
 
 TEST_CASE("options: what is asked for is taken, wrong words are named") {
