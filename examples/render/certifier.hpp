@@ -1,6 +1,7 @@
 // How wrong a rendering is: pictures that go on until an error is certified, error bars, and statements.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +26,7 @@
 #include "common/light_set.hpp"
 #include "common/probe_paths.hpp"
 #include "render/options.hpp"
+#include "render/passes.hpp"
 #include "render/phases.hpp"
 #include "render/report.hpp"
 
@@ -48,12 +50,11 @@ public:
     [[nodiscard]] aglow::film<S> until(const Integrator& integrator, const sample_lookups& lookups,
                                        const time_budget& budget, render_result& result) {
         const double begun = budget.spent();
-        aglow::film<S> film{options_.width, options_.height};
+        exposure taken{.film{options_.width, options_.height}};
         std::optional<aglow::audited_film<T>> numbers;
         const auto advance = [&](double work) {
-            const auto wanted = static_cast<std::uint32_t>(std::ceil(work));
-            film.expose(eye(), integrator, {.samples = wanted - film.samples(), .seed = options_.seed}, run_);
-            return numbers.emplace(film).view();
+            if (!expose(taken, integrator, work, budget)) { throw interrupted{}; }
+            return numbers.emplace(taken.film).view();
         };
         aglow::render_until_options o;
         o.audit = {.target = options_.until, .seed = options_.seed};
@@ -69,12 +70,12 @@ public:
                 with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, probing_); });
             tell(reached, budget, result);
         } catch (const interrupted&) {
-            if (film.samples() == 0) { (void)advance(o.first_work); }
+            if (taken.film.samples() == 0) { (void)expose(taken, integrator, o.first_work, budget); }
             tell({.status = aglow::until_status::cancelled}, budget, result);
         }
         result.phases.push_back({"picture and audits", budget.spent() - begun});
-        result.add_fact("samples a pixel", film.samples());
-        return film;
+        result.add_fact("samples a pixel", taken.film.samples());
+        return std::move(taken.film);
     }
 
     /// Audits a finished film: the statements, and the error bars of all pixels.
@@ -85,6 +86,27 @@ public:
     }
 
 private:
+    /// A film, and the seconds that its samples took.
+    struct exposure {
+        aglow::film<S> film;
+        double seconds{0};
+    };
+
+    /// Takes samples up to `work` a pixel, one pass at least; false where the time was over between two passes.
+    template <typename Integrator>
+    [[nodiscard]] bool expose(exposure& taken, const Integrator& integrator, double work, const time_budget& budget) {
+        const auto wanted = static_cast<std::uint32_t>(std::ceil(work));
+        for (std::uint32_t so_far = taken.film.samples(); so_far < wanted; so_far = taken.film.samples()) {
+            if (so_far > 0 && budget.is_over()) { return false; }
+            const double begun = budget.spent();
+            const std::uint32_t pass = samples_of_pass(so_far, taken.seconds, budget.left());
+            const std::uint32_t samples = std::min(pass, wanted - so_far);
+            taken.film.expose(eye(), integrator, {.samples = samples, .seed = options_.seed}, run_);
+            taken.seconds += budget.spent() - begun;
+        }
+        return true;
+    }
+
     void audit_whole(const aglow::film<S>& film, const time_budget& budget, render_result& result) {
         const double begun = budget.spent();
         const classified_film numbers{film, features(),

@@ -14,6 +14,7 @@
 
 #include <aglow/estimators/density.hpp>
 
+#include "common/image_io.hpp"
 #include "render/usage_error.hpp"
 
 namespace host {
@@ -77,15 +78,18 @@ CLI::Validator between(double low, double high) {
     return {refuse, ""};
 }
 
-/// Refuses what is not a whole number from `low` to `high`.
+/// Refuses what is not a whole number from `low` to `high`, and drops leading zeros, by which CLI11 would read octal.
 CLI::Validator whole(std::uint64_t low, std::uint64_t high) {
-    const auto refuse = [low, high](std::string& text) -> std::string {
+    const auto decimal = [low, high](std::string& text) -> std::string {
         std::uint64_t n = 0;
         const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), n);
-        if (wrong == std::errc{} && end == text.data() + text.size() && n >= low && n <= high) { return {}; }
+        if (wrong == std::errc{} && end == text.data() + text.size() && n >= low && n <= high) {
+            text = std::to_string(n);
+            return {};
+        }
         return text + " is not a whole number from " + std::to_string(low) + " to " + std::to_string(high);
     };
-    return {refuse, ""};
+    return {decimal, ""};
 }
 
 /// The first line of what CLI11 complains of.
@@ -102,12 +106,13 @@ void add_picture(CLI::App& app, render_options& o, std::string& size) {
     };
     add("-o,--output", o.output, "FILE", "the picture: .exr (a .png comes beside it) or .png [SCENE.exr]");
     add("--size", size, "WxH", "width x height in pixels [256x256]");
-    add("--spp", o.samples, "N", "samples per pixel [16]")->check(whole(1, 1 << 24));
+    add("--spp", o.samples, "N", "samples per pixel [16]")->transform(whole(1, 1 << 24));
     add("--time", o.seconds, "SECONDS", "as many samples as fit into so many seconds, preparation included")
         ->check(between(0.01, 1e7));
     add("--seed", o.seed, "N", "another seed, other noise [0]")
-        ->check(whole(0, std::numeric_limits<std::uint64_t>::max()));
-    add("--threads", o.threads, "N", "threads; the picture does not depend on them [all cores]")->check(whole(1, 1024));
+        ->transform(whole(0, std::numeric_limits<std::uint64_t>::max()));
+    add("--threads", o.threads, "N", "threads; the picture does not depend on them [all cores]")
+        ->transform(whole(1, 1024));
     add("--exposure", o.exposure, "FACTOR", "of the PNG [1]")->check(between(1e-6, 1e6));
 }
 
@@ -117,16 +122,16 @@ void add_method(CLI::App& app, render_options& o, std::string& how) {
     };
     add("--method", how, "NAME", "path, irradiance-cache, photon-map, final-gather or gather-cache [gather-cache]");
     add("--caustic-photons", o.caustic_photons, "N", "wanted over mirrors and glass [200000]")
-        ->check(whole(0, 4'000'000'000));
+        ->transform(whole(0, 4'000'000'000));
     add("--indirect-photons", o.indirect_photons, "N", "wanted after a matte bounce [100000; photon-map 200000]")
-        ->check(whole(0, 4'000'000'000));
+        ->transform(whole(0, 4'000'000'000));
     add("--direct-photons", o.direct_photons, "N", "wanted straight from the lights [20000; photon-map 0]")
-        ->check(whole(0, 4'000'000'000));
+        ->transform(whole(0, 4'000'000'000));
     add("--estimate", o.photons_per_estimate, "N",
         "photons per estimate [" + std::to_string(aglow::density_options{}.count) + "]")
-        ->check(whole(2, 100000));
+        ->transform(whole(2, 100000));
     add("--gather-rays", o.gather_rays, "N", "rays of each cache record [350] or final gather [64]")
-        ->check(whole(1, 1 << 20));
+        ->transform(whole(1, 1 << 20));
     add("--accuracy", o.accuracy, "X", "of the irradiance cache: smaller is finer")->check(between(1e-4, 10.0));
 }
 
@@ -143,7 +148,7 @@ void add_questions(CLI::App& app, render_options& o, std::string& show, std::str
            "most samples of that audit, to which rare kinds of pixels add about as many: few make bars and bounds "
            "wider, never wrong [as many as the probes' noise calls for]")
         ->type_name("N")
-        ->check(whole(10'000, 4'000'000'000))
+        ->transform(whole(10'000, 4'000'000'000))
         ->group(group);
     app.add_option(
            "--until", until,
@@ -170,6 +175,9 @@ void expect_consistent(const CLI::App& app, const render_options& o) {
     }
     if (o.output.extension() != ".exr" && o.output.extension() != ".png") {
         throw usage_error("--output " + o.output.string() + ": the name must end in .exr or .png");
+    }
+    if (o.output.extension() == ".png" && !has_png()) {
+        throw usage_error("--output " + o.output.string() + ": built without libpng, only .exr can be written");
     }
     if (o.output.extension() == ".png" && (o.layers || o.reference)) {
         throw usage_error("--output " + o.output.string() +
@@ -227,6 +235,7 @@ Ctrl-C ends the pass that is under way, and what is there is written; a second o
 
 Status 0: a picture was written. 1: it failed on the way. 2: the wish makes no sense, or the file cannot be read.
 130: interrupted, and what was there was written.)");
+    app.option_defaults()->take_last();  // a script's options come first, and its caller's win
     add_picture(app, o, size);
     add_method(app, o, how);
     add_questions(app, o, show, until);
@@ -240,9 +249,10 @@ Status 0: a picture was written. 1: it failed on the way. 2: the wish makes no s
     if (o.scene.empty()) { throw usage_error("no scene is named; --list shows the built-in ones, --help the options"); }
     o.how = chosen(methods, "--method", how);
     o.show = chosen(views, "--view", show);
-    if (!size.empty()) { read_size(size, o); }
-    if (!until.empty()) { o.until = error_share(until); }
-    if (o.output.empty()) { o.output = std::filesystem::path{o.scene}.stem().string() + ".exr"; }
+    // By their count: an empty word, a shell's unset variable, is a wrong wish.
+    if (app.count("--size") > 0) { read_size(size, o); }
+    if (app.count("--until") > 0) { o.until = error_share(until); }
+    if (app.count("--output") == 0) { o.output = std::filesystem::path{o.scene}.stem().string() + ".exr"; }
     expect_consistent(app, o);
     o.unused = unused(app, o);
     return o;

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,10 @@ public:
     [[nodiscard]] bool limited() const { return seconds_ > 0; }
     [[nodiscard]] double seconds() const { return seconds_; }
     [[nodiscard]] double spent() const { return spent_(); }
+    /// Infinite without a limit, negative past it.
+    [[nodiscard]] double left() const {
+        return limited() ? seconds_ - spent() : std::numeric_limits<double>::infinity();
+    }
     [[nodiscard]] bool ended() const { return ended_(); }
     [[nodiscard]] bool is_over() const { return ended() || (limited() && spent() >= seconds_); }
 

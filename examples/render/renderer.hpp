@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@
 #include "common/progress.hpp"
 #include "render/certifier.hpp"
 #include "render/options.hpp"
+#include "render/passes.hpp"
 #include "render/phases.hpp"
 #include "render/report.hpp"
 #include "render/settings.hpp"
@@ -71,7 +73,6 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
-    static constexpr double patience = 5;  // seconds of a pass
 
     static aglow::own_threads threads(const render_options& o) {
         return o.threads == 0 ? aglow::own_threads{} : aglow::own_threads{o.threads};
@@ -240,14 +241,9 @@ private:
         result_.notes.push_back(name + ": interrupted after " + std::to_string(taken) + of + " samples a pixel");
     }
 
-    /// Samples of the next pass, which is not interrupted: doubling, but so few that nobody waits long for its end, and
-    /// no more than the time allows.
     [[nodiscard]] std::uint32_t next_samples(std::uint32_t taken, double spent) const {
-        const std::uint32_t most = timed() ? ~0u : wanted() - taken;
-        if (taken == 0) { return std::min(most, timed() ? 1u : 4u); }
-        const double left = timed() ? std::clamp(end_ - budget_.spent(), 0.0, patience) : patience;
-        const double fit = std::min(static_cast<double>(taken), left * static_cast<double>(taken) / spent);
-        return std::min(most, std::max(1u, static_cast<std::uint32_t>(fit)));
+        if (timed()) { return samples_of_pass(taken, spent, end_ - budget_.spent()); }
+        return std::min(wanted() - taken, samples_of_pass(taken, spent, std::numeric_limits<double>::infinity()));
     }
     [[nodiscard]] bool done(std::uint32_t taken, double spent) const {
         if (budget_.ended() && taken_ == 0) { return true; }

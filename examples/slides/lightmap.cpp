@@ -3,6 +3,7 @@
 // Integrators answer rays. For a baker these start just above a texel and look straight down: then an atlas is a film,
 // every integrator a baker, and the audit of a picture that of a lightmap.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -53,7 +54,8 @@ public:
     }
 
     /// The ray that looks down at a point of the film.
-    [[nodiscard]] aglow::ray<float> eye(const vec2<float>& film) const {
+    [[nodiscard]] aglow::ray<float> eye(vec2<float> film) const {
+        film = glm::min(film, std::nextafter(static_cast<float>(side_), 0.0f));  // 255 + u may round to 256
         const auto pixel = static_cast<std::size_t>(film.y) * side_ + static_cast<std::size_t>(film.x);
         const auto t = buried_[pixel] ? std::nullopt : texel_at(film);
         if (!t) { return {.reach = 0}; }

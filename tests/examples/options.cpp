@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/image_io.hpp"
 #include "render/usage_error.hpp"
 #include "support/catch.hpp"
 
@@ -70,7 +71,35 @@ TEST_CASE("options: a picture is named after its scene, a model's without its fo
     CHECK(read({"models/bunny.ply"}).output == "bunny.exr");
 }
 
-TEST_CASE("options: -o is short for --output") { CHECK(read({"furnace", "-o", "x.png"}).output == "x.png"); }
+TEST_CASE("options: -o is short for --output") { CHECK(read({"furnace", "-o", "x.exr"}).output == "x.exr"); }
+
+TEST_CASE("options: a PNG is refused at once where none can be written") {
+    CHECK(complaint({"furnace", "-o", "x.png"}).empty() == host::has_png());
+}
+
+TEST_CASE("options: of an option given twice the last counts") {
+    const auto o = read({"furnace",    "--size",  "32x32",  "--spp",  "1",      "--method", "path",    "--until",
+                         "1%",         "--view",  "direct", "--size", "8x4",    "--spp",    "4",       "--method",
+                         "photon-map", "--until", "5%",     "--view", "beauty", "--layers", "--layers"});
+    CHECK((o.width == 8 && o.height == 4));
+    CHECK(o.samples == 4);
+    CHECK(o.how == host::method::photon_map);
+    CHECK(o.until == Approx(0.05));
+    CHECK(o.show == host::view::beauty);
+}
+
+TEST_CASE("options: numbers are decimal, leading zeros or not") {
+    const auto o = read({"furnace", "--spp", "010", "--seed", "00", "--threads", "08", "--size", "010x0020",
+                         "--gather-rays", "0100", "--caustic-photons", "0777", "--error-samples", "020000"});
+    CHECK(o.samples == 10);
+    CHECK(o.seed == 0);
+    CHECK(o.threads == 8);
+    CHECK((o.width == 10 && o.height == 20));
+    CHECK(o.gather_rays == 100);
+    CHECK(o.caustic_photons == 777);
+    CHECK(o.error_samples == 20000);
+    CHECK(read({"furnace", "--seed", "18446744073709551615"}).seed == 18446744073709551615u);
+}
 
 TEST_CASE("options: what changes nothing is said, and nothing else") {
     const auto said = [](std::initializer_list<const char*> words) {
@@ -117,6 +146,21 @@ TEST_CASE("options: every wrong wish is one line that names it") {
         {complaint({"furnace", "--spp"}), "--spp"},
         {complaint({"furnace", "--spp", "1.5"}), "1.5 is not a whole number from 1 to 16777216"},
         {complaint({"furnace", "--spp", "1e3"}), "1e3"},
+        {complaint({"furnace", "--spp", "0x10"}), "0x10"},
+        {complaint({"furnace", "--spp", "4", "8"}), "8"},
+        {complaint({"furnace", "--spp", "x", "--spp", "4"}), "x is not a whole number"},
+        {complaint({"furnace", "--spp", "4", "--spp", "x"}), "x is not a whole number"},
+        {complaint({"furnace", "--spp", "4", "--spp"}), "--spp"},
+        {complaint({"furnace", "--method", "path", "--method", "magic"}), "magic"},
+        {complaint({"furnace", "--view", "beauty", "--view", "direct", "--error"}), "--view direct"},
+        {complaint({"furnace", "--spp", ""}), "--spp"},
+        {complaint({"furnace", "--time", ""}), "--time"},
+        {complaint({"furnace", "--size", ""}), "--size"},
+        {complaint({"furnace", "--until", ""}), "--until"},
+        {complaint({"furnace", "--output", ""}), "--output"},
+        {complaint({"furnace", "--method", ""}), "--method"},
+        {complaint({"furnace", "--view", ""}), "--view"},
+        {complaint({""}), "--list"},
         {complaint({"furnace", "--seed", "18446744073709551616"}), "18446744073709551616"},
         {complaint({"furnace", "--view", "direct", "--until", "5%"}), "--view direct"},
         {complaint({"furnace", "--view", "direct", "--error"}), "--view direct"},

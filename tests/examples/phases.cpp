@@ -1,10 +1,12 @@
 #include "render/phases.hpp"
 
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "render/passes.hpp"
 #include "support/catch.hpp"
 
 namespace {
@@ -102,4 +104,16 @@ TEST_CASE("phases: what is told to end is over, lets no phase go on, and says th
     watch.finish(result);
     REQUIRE(result.notes.size() == 2);
     CHECK(result.notes[0] == "photons: cut short after 30 %, interrupted");
+}
+
+TEST_CASE("passes: samples double until a pass takes five seconds, or what is left") {
+    const double ever = std::numeric_limits<double>::infinity();
+    CHECK(host::samples_of_pass(0, 0, ever) == 4);
+    CHECK(host::samples_of_pass(0, 0, 100) == 1);
+    CHECK(host::samples_of_pass(4, 0.1, ever) == 4);
+    CHECK(host::samples_of_pass(4, 0, ever) == 4);
+    CHECK(host::samples_of_pass(100, 50, ever) == 10);
+    CHECK(host::samples_of_pass(100, 50, 2) == 4);
+    CHECK(host::samples_of_pass(100, 2000, ever) == 1);
+    CHECK(host::samples_of_pass(100, 50, -1) == 1);
 }
