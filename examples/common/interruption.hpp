@@ -5,7 +5,9 @@
 #include <csignal>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <string_view>
+#include <utility>
 
 #include <unistd.h>
 
@@ -34,28 +36,31 @@ private:
     static inline std::atomic<bool> came_{false};
 };
 
-/// Thrown out of work that an interruption ended, and of which there is no part to keep.
+/// Thrown out of work that was ended early, and of which there is no part to keep.
 struct interrupted : std::exception {
     [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
 };
 
-/// An executor that runs tasks on `run` until an interruption comes, and then throws `interrupted`.
+/// An executor that runs tasks on `run` until `ended()`, asked from any thread, is true, and then throws `interrupted`;
+/// of itself it ends by an interruption.
 template <typename Run>
 class interruptible {
 public:
     /// Keeps a reference.
-    explicit interruptible(const Run& run) : run_{run} {}
+    explicit interruptible(const Run& run, std::function<bool()> ended = &interruption::came)
+        : run_{run}, ended_{std::move(ended)} {}
 
     template <typename Task>
     void operator()(std::size_t count, Task&& task) const {
         run_(count, [&](std::size_t i) {
-            if (interruption::came()) { throw interrupted{}; }
+            if (ended_()) { throw interrupted{}; }
             task(i);
         });
     }
 
 private:
     const Run& run_;
+    std::function<bool()> ended_;
 };
 
 }  // namespace host

@@ -64,10 +64,11 @@ public:
             std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
             return !budget.is_over();
         };
+        const interruptible looking{run_, [&] { return budget.is_over(); }};
         try {
             o.probe_work = probe_work(integrator, lookups);
             const aglow::until_result reached =
-                with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, probing_); });
+                with_probe([&](const auto& probe) { return aglow::render_until(advance, probe, o, looking); });
             tell(reached, budget, result);
         } catch (const interrupted&) {
             if (taken.film.samples() == 0) { (void)expose(taken, integrator, o.first_work, budget); }

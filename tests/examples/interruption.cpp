@@ -29,3 +29,11 @@ TEST_CASE(
     const host::interruption deaf;
     CHECK(std::signal(SIGINT, before) == SIG_IGN);
 }
+
+TEST_CASE("interruption: work that a host ends for its own reasons ends like an interrupted one") {
+    const aglow::own_threads two{2};
+    std::atomic<int> done{0};
+    const host::interruptible run{two, [&] { return done >= 5; }};
+    CHECK_THROWS_AS(run(1000, [&](std::size_t) { ++done; }), host::interrupted);
+    CHECK((done == 5 || done == 6));  // both threads may have asked before the fifth was done
+}
