@@ -158,5 +158,6 @@
 #include <aglow/report/running_mean.hpp>
 #include <aglow/report/statement.hpp>
 #include <aglow/report/tails.hpp>
+#include <aglow/report/until_history.hpp>
 #include <aglow/report/until_result.hpp>
 #include <aglow/report/until_rule.hpp>

@@ -42,10 +42,7 @@ struct caustic_reader {
         return source.incoming(r, numbers, caustics);
     }
     [[nodiscard]] estimate<S> unseen(const gather_point<T>& at) const {
-        const auto e = reflected.irradiance(at.position, at.normal, density);
-        estimate<S> result = shared_error{.common = reflected.common}.on(e.value, e.error);
-        result.bias = e.bias;
-        return result;
+        return told_by(reflected, {.common = reflected.common}, at.position, at.normal, density);
     }
 };
 

@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <iterator>
 #include <span>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -26,14 +25,6 @@
 #include <aglow/estimators/irradiance_cache.hpp>
 
 namespace aglow {
-
-/// A source of incoming light that knows of irradiance which its rays do not bring: `unseen(gather_point)`, an
-/// `estimate` in W/m².
-template <typename F, typename T>
-concept KnowsUnseen = requires(const F& incoming, const gather_point<T>& at) {
-    incoming.unseen(at).value;
-    incoming.unseen(at).error;
-};
 
 namespace detail {
 
@@ -70,7 +61,6 @@ public:
             ++result_.rounds;
             gather(thinned(std::max(spacing, finest)), progress);
         }
-        drop_covered(wanted);
         cover_bared(finest, progress);
         drop_covered(wanted);
         result_.uncovered = pending_.size();
@@ -285,14 +275,6 @@ private:
     fill_result result_;
 };
 
-inline void check(const fill_cache_options& o) {
-    expect_setting(o.rays > 0, "rays", o.rays);
-    expect_setting(is_finite(o.minimum_weight) && o.minimum_weight >= 0, "minimum_weight", o.minimum_weight);
-    expect_setting(is_finite(o.scatter) && o.scatter >= 0, "scatter", o.scatter);
-    expect_setting(is_finite(o.noise) && o.noise >= 0, "noise", o.noise);
-    expect_setting(o.refinement > 0 && o.refinement <= 0.95, "refinement", o.refinement);
-}
-
 struct go_on {
     bool operator()(const fill_progress&) const { return true; }
 };
@@ -311,15 +293,6 @@ fill_result fill_cache(irradiance_cache<S, T, F>& cache,
     detail::check(options);
     detail::cache_filler<irradiance_cache<S, T, F>, Incoming, E> filler{cache, candidates, incoming, options, run};
     return filler.fill(progress);
-}
-
-/// Irradiance from the cache, or where it has no record from `fallback()`: a gather of its own (`gather_once`), whose
-/// numbers are the path's, so that the picture stays the same for any number of threads.
-template <typename Cache, typename T, typename Fallback>
-[[nodiscard]] typename Cache::spectrum irradiance_or(const Cache& cache, const vec3<T>& point, const vec3<T>& normal,
-                                                     Fallback&& fallback) {
-    const auto answer = cache.lookup(point, normal);
-    return answer ? answer.irradiance : typename Cache::spectrum(fallback());
 }
 
 }  // namespace aglow

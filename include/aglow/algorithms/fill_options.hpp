@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include <aglow/algorithms/gather.hpp>
+#include <aglow/core/numbers.hpp>
+#include <aglow/estimators/irradiance_cache_options.hpp>
 
 namespace aglow {
 
@@ -63,5 +65,26 @@ struct fill_result {
     std::size_t uncovered{0};  ///< candidates without cover in the end
     bool cancelled{false};
 };
+
+/// A source of incoming light that knows of irradiance which its rays do not bring: `unseen(gather_point)`, an
+/// `estimate` in W/m².
+template <typename F, typename T>
+concept KnowsUnseen = requires(const F& incoming, const gather_point<T>& at) {
+    incoming.unseen(at).value;
+    incoming.unseen(at).error;
+};
+
+namespace detail {
+
+/// Throws `std::invalid_argument` for options that make no sense.
+inline void check(const fill_cache_options& o) {
+    expect_setting(o.rays > 0, "rays", o.rays);
+    expect_setting(is_finite(o.minimum_weight) && o.minimum_weight >= 0, "minimum_weight", o.minimum_weight);
+    expect_setting(is_finite(o.scatter) && o.scatter >= 0, "scatter", o.scatter);
+    expect_setting(is_finite(o.noise) && o.noise >= 0, "noise", o.noise);
+    expect_setting(o.refinement > 0 && o.refinement <= 0.95, "refinement", o.refinement);
+}
+
+}  // namespace detail
 
 }  // namespace aglow

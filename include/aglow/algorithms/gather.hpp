@@ -120,4 +120,13 @@ template <std::floating_point T, Numbers N, IncomingLight<T, N> Incoming>
     return spectrum(sum * static_cast<band_of<spectrum>>(accepted > 0 ? pi<T> / static_cast<T>(accepted) : T(0)));
 }
 
+/// Irradiance from the cache, or where it has no record from `fallback()`: a gather of its own (`gather_once`), whose
+/// numbers are the path's, so that the picture stays the same for any number of threads.
+template <typename Cache, typename T, typename Fallback>
+[[nodiscard]] typename Cache::spectrum irradiance_or(const Cache& cache, const vec3<T>& point, const vec3<T>& normal,
+                                                     Fallback&& fallback) {
+    const auto answer = cache.lookup(point, normal);
+    return answer ? answer.irradiance : typename Cache::spectrum(fallback());
+}
+
 }  // namespace aglow

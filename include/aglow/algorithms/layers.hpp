@@ -43,6 +43,16 @@ template <lobe_set Possible = lobe_set::all, Surface H, typename Irradiance>
     return result;
 }
 
+/// What a map tells of irradiance, and what all that it tells is off by together.
+template <Spectrum S, std::floating_point T, typename Item>
+[[nodiscard]] estimate<S> told_by(const photon_map<S, T, Item>& map, const shared_error& shared, const vec3<T>& point,
+                                  const vec3<T>& normal, const density_options& options) {
+    const auto e = map.irradiance(point, normal, options);
+    estimate<S> result = shared.on(e.value, e.error);
+    result.bias = e.bias;
+    return result;
+}
+
 /// Layer: a photon map looked at directly, on diffuse lobes.
 template <Spectrum S, std::floating_point T, typename Item = photon<S>>
 class map_layer {
@@ -58,11 +68,8 @@ public:
     template <Surface H, typename N>
     [[nodiscard]] estimate<S> operator()(const H& hit, const vec3<T>& wo, T, const N&, std::uint32_t) const {
         if (map_.empty()) { return {}; }
-        return diffuse_radiance(hit, wo, [&](const vec3<T>& side) -> estimate<S> {
-            const auto e = map_.irradiance(vec3<T>(hit.position), side, options_);
-            estimate<S> result = shared_.on(e.value, e.error);
-            result.bias = e.bias;
-            return result;
+        return diffuse_radiance(hit, wo, [&](const vec3<T>& side) {
+            return told_by(map_, shared_, vec3<T>(hit.position), side, options_);
         });
     }
 

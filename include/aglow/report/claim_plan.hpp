@@ -51,6 +51,11 @@ struct claim_outlook {
     double least_noise{0.35};
 };
 
+/// The most and sharpest probes that may be had, at once.
+[[nodiscard]] inline claim_plan best_probes(const claim_outlook& known) {
+    return {known.work, known.most_probes, std::min(known.noise, known.least_noise)};
+}
+
 /// How far the bound lies above what the probes see, relative to that.
 [[nodiscard]] inline double reach_of(const claim_outlook& known, const claim_plan& plan, double z) {
     return 1.1 * z * known.ratio / std::sqrt(static_cast<double>(plan.probes));

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
-#include <aglow/core/random.hpp>
 #include <aglow/report/audit.hpp>
 #include <aglow/report/claim_plan.hpp>
 #include <aglow/report/decay.hpp>
+#include <aglow/report/until_history.hpp>
 #include <aglow/report/until_result.hpp>
 
 namespace aglow::detail {
@@ -34,7 +32,7 @@ public:
             draw(picture, probe, run);
         }
         pixels_ = picture.image.pixels();
-        add(seen(work));
+        history_.add(seen(work));
         while (unclear() && noise_ > options_.least_noise && may_be_sharper() && affordable(work)) {
             sharpen(std::max(noise_ / 2, options_.least_noise), picture, probe, work, run);
         }
@@ -91,7 +89,7 @@ public:
         audit_options how = options_.audit;
         how.confidence = 1 - miss(++claims_);
         const audit_result result = judged(*sample_, how);
-        checks_.back().bound = result.mean_error_bound;
+        history_.set_bound(result.mean_error_bound);
         broken_ = has_broken_probes(result);
         return result;
     }
@@ -111,7 +109,7 @@ public:
     /// Whether the last claim failed, and every other will, because the probes' own answers are broken.
     [[nodiscard]] bool is_broken() const { return broken_; }
 
-    [[nodiscard]] decay_fit decay() const { return fit_decay(checks_for_fit_); }
+    [[nodiscard]] decay_fit decay() const { return history_.decay(); }
 
     [[nodiscard]] claim_plan plan(double work) const { return cheapest_claim(outlook(work)); }
 
@@ -128,7 +126,7 @@ public:
         return is_finite(best.work) ? certified_work(known, best, 1) : best.work;
     }
 
-    [[nodiscard]] const std::vector<until_check>& checks() const { return checks_; }
+    [[nodiscard]] const std::vector<until_check>& checks() const { return history_.all(); }
     [[nodiscard]] std::size_t claims() const { return claims_; }
     [[nodiscard]] std::size_t samples() const { return sample_ ? sample_->samples() : 0; }
 
@@ -148,7 +146,7 @@ private:
     void sharpen(double noise, const audited_picture<T>& picture, const P& probe, double work, const E& run) {
         const double before = noise_;
         sample_->sharpen(audit_ground<T>{picture, options_.audit}, square(noise_ / noise), probe, run);
-        add(seen(work));
+        history_.add(seen(work));
         blunt_ = blunt_ || (!sample_->heavy_tailed() && noise_ > before * std::pow(noise / before, 0.25));
     }
 
@@ -166,7 +164,7 @@ private:
     void grow(std::size_t count, const audited_picture<T>& picture, const P& probe, double work, const E& run) {
         if (count <= probes()) { return; }
         sample_->grow(audit_ground<T>{picture, options_.audit}, count - probes(), probe, run);
-        add(seen(work));
+        history_.add(seen(work));
     }
 
     /// Whether the probes' noise, which no picture changes, stays heavy-tailed to the end of patience, and that is not
@@ -200,22 +198,19 @@ private:
     /// Whether not even the best probes would certify what the error falls to. Forgets when it began once it is not so.
     bool seems_out_of_reach(double work) {
         const claim_outlook known = outlook(work);
-        const bool seems = distinct_ >= 4 && known.seen * known.decay.floor >
-                                                 certifiable_error(known, best_probes(known), known.z.front());
+        const bool seems =
+            history_.pictures() >= 4 &&
+            known.seen * known.decay.floor > certifiable_error(known, best_probes(known), known.z.front());
         if (!seems) { stuck_at_ = std::numeric_limits<double>::infinity(); }
         return seems;
-    }
-
-    [[nodiscard]] static claim_plan best_probes(const claim_outlook& known) {
-        return {known.work, known.most_probes, std::min(known.noise, known.least_noise)};
     }
 
     /// Whether the measurements exclude every floor at or below the target. All are made by the same probes.
     [[nodiscard]] bool target_is_excluded() const {
         // What few pixels are off by is chance itself, whatever the probes know of it: it need not fall evenly.
-        const double doubt = std::hypot(checks_.back().error_deviation / checks_.back().error,
+        const double doubt = std::hypot(history_.last().error_deviation / history_.last().error,
                                         1 / std::sqrt(static_cast<double>(pixels_)));
-        return distinct_ >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
+        return history_.pictures() >= 4 && decay().floor_low * (1 - 2 * doubt) > options_.audit.target;
     }
 
     [[nodiscard]] std::size_t probes() const { return sample_->probes(); }
@@ -232,7 +227,7 @@ private:
     }
 
     [[nodiscard]] bool unclear() const {
-        const until_check& last = checks_.back();
+        const until_check& last = history_.last();
         return sample_->heavy_tailed() || !(last.error_deviation < 0.15 * last.error);
     }
 
@@ -244,7 +239,7 @@ private:
     }
 
     [[nodiscard]] claim_outlook outlook(double work) const {
-        const until_check& last = checks_.back();
+        const until_check& last = history_.last();
         claim_outlook known{.target = options_.audit.target,
                             .growth = options_.least_growth,
                             .work = work,
@@ -277,30 +272,17 @@ private:
 
     /// Whether the error seems to stay above the target, or to need much more work.
     [[nodiscard]] bool floor_is_feared() const {
-        if (distinct_ < 3) { return false; }
+        if (history_.pictures() < 3) { return false; }
         const decay_fit fit = decay();
-        return fit.floor > 0.8 * options_.audit.target || fit.work_to(options_.audit.target) > 8 * checks_.back().work;
+        return fit.floor > 0.8 * options_.audit.target || fit.work_to(options_.audit.target) > 8 * history_.last().work;
     }
 
     [[nodiscard]] double miss(std::size_t claim) const {
         return (1 - options_.audit.confidence) * share_of_miss(claim);
     }
 
-    void add(const until_check& check) {
-        if (checks_.empty() || checks_.back().work < check.work) {
-            ++distinct_;
-        } else {  // better probes saw the same picture
-            checks_for_fit_.pop_back();
-        }
-        checks_.push_back(check);
-        const double deviation = std::max(check.error_deviation, 1e-9 * std::abs(check.error));
-        checks_for_fit_.push_back({check.work, check.error, deviation});
-    }
-
     const render_until_options& options_;
-    std::vector<until_check> checks_{};
-    std::vector<measured_error> checks_for_fit_{};
-    std::size_t distinct_{0};
+    until_history history_{};
     std::size_t pixels_{1};
     std::optional<audit_sample<T>> sample_{};
     double noise_;       // of the probes, as a share of the target
