@@ -145,8 +145,8 @@ void add_questions(CLI::App& app, render_options& o, std::string& show, std::str
         ->group(group);
     app.add_option(
            "--error-samples", o.error_samples,
-           "most samples of that audit, to which rare kinds of pixels add about as many: few make bars and bounds "
-           "wider, never wrong [as many as the probes' noise calls for]")
+           "most samples of that audit: few make bars and bounds wider, never wrong [as many as the probes' noise "
+           "calls for]")
         ->type_name("N")
         ->transform(whole(10'000, 4'000'000'000))
         ->group(group);

@@ -38,7 +38,7 @@ public:
           options_{options},
           of_{picture_.image, ground.floor},
           shares_{ground.shares},
-          uniform_{static_cast<std::size_t>(shares_.uniform_part() * static_cast<double>(options.probes))} {}
+          uniform_{uniform_of(options.probes)} {}
 
     /// Takes so many samples to a batch on average, as a pilot would have found.
     void deal(std::size_t per_batch) { per_batch_ = per_batch; }
@@ -54,16 +54,13 @@ public:
         std::size_t batch = 1;
         for (std::uint64_t round = 2;; ++round) {
             const std::vector<std::size_t> batches(pilot_probes, batch);
-            const double wanted =
-                wanted_batch(all(probe, run, uniform_pixels(pilot_probes, round), batches, round), batch);
-            const double most = affordable_batch();
-            const double next = std::clamp(std::ceil(std::min(wanted, most)), 1.0, 1e9);
-            wanted_ = wanted;
-            if (wanted <= 8 * static_cast<double>(batch) || next < wanted) {
-                per_batch_ = static_cast<std::size_t>(next);
+            wanted_ = wanted_batch(all(probe, run, uniform_pixels(pilot_probes, round), batches, round), batch);
+            const std::size_t next = allowed_batch();
+            if (wanted_ <= 8 * static_cast<double>(batch) || static_cast<double>(next) < wanted_) {
+                fit_to_budget();
                 return;
             }
-            batch = static_cast<std::size_t>(std::ceil(next / 4));
+            batch = (next + 3) / 4;
         }
     }
 
@@ -77,8 +74,8 @@ public:
     [[nodiscard]] std::size_t called_for(bool heavy) const {
         const double got = static_cast<double>(per_batch_);
         const double need = std::max(std::ceil(wanted_), heavy && is_patient() ? 4 * got : 0.0);
-        if (!(need > got)) { return 0; }
-        return static_cast<std::size_t>(std::min(1e18, need * sample_cost()));
+        if (!(need > got || is_short_)) { return 0; }
+        return static_cast<std::size_t>(std::min(1e18, need * wanted_cost_));
     }
 
     void quadruple() { per_batch_ *= 4; }
@@ -91,6 +88,9 @@ public:
         }
         return pixels;
     }
+
+    /// How many probes a class gets at least.
+    [[nodiscard]] std::size_t class_probes() const { return options_.class_probes; }
 
     /// Further pixels of classes that the uniform draw hit too seldom.
     [[nodiscard]] std::vector<std::size_t> pixels_of_rare_classes() const {
@@ -164,6 +164,8 @@ public:
 
 private:
     static constexpr std::size_t pilot_probes = 32;
+    static constexpr std::size_t least_probes = 200;
+    static constexpr std::size_t least_class_probes = 60;
 
     template <typename P>
     [[nodiscard]] static double lost_by(const P& probe) {
@@ -206,8 +208,37 @@ private:
         return 4 * static_cast<double>(per_batch_) * probe_batches <= most;
     }
 
+    /// Where the budget is short there are fewer probes: few that see well tell more than many that see badly.
+    void fit_to_budget() {
+        rare_ = pixels_of_rare_classes().size();
+        wanted_cost_ = sample_cost();
+        const double share = affordable_batch() / wanted_;
+        is_short_ = share < 1;
+        if (is_short_) {
+            const auto fewer = [share](std::size_t count, std::size_t least) {
+                return std::max(std::min(count, least), static_cast<std::size_t>(share * static_cast<double>(count)));
+            };
+            options_.probes = fewer(options_.probes, least_probes);
+            options_.class_probes = fewer(options_.class_probes, least_class_probes);
+            uniform_ = uniform_of(options_.probes);
+            rare_ = pixels_of_rare_classes().size();
+        }
+        per_batch_ = allowed_batch();
+    }
+
+    [[nodiscard]] std::size_t uniform_of(std::size_t probes) const {
+        return static_cast<std::size_t>(shares_.uniform_part() * static_cast<double>(probes));
+    }
+
     /// Samples of all probes for one in a batch, those of the look that shares them out included.
-    [[nodiscard]] double sample_cost() const { return 1.125 * static_cast<double>(options_.probes * probe_batches); }
+    [[nodiscard]] double sample_cost() const {
+        return 1.125 * static_cast<double>((options_.probes + rare_) * probe_batches);
+    }
+
+    /// What is wanted, or as much of that as the budget allows.
+    [[nodiscard]] std::size_t allowed_batch() const {
+        return static_cast<std::size_t>(std::clamp(std::ceil(std::min(wanted_, affordable_batch())), 1.0, 1e9));
+    }
 
     /// What the budget allows.
     [[nodiscard]] double affordable_batch() const {
@@ -221,7 +252,10 @@ private:
     const pixel_shares& shares_;
     std::size_t uniform_;
     std::size_t per_batch_{1};
-    double wanted_{0};  ///< samples per batch, by the pilot
+    std::size_t rare_{0};    ///< further probes, of rare classes
+    double wanted_{0};       ///< samples per batch, by the pilot
+    double wanted_cost_{0};  ///< of all probes that were asked for, for one sample in a batch
+    bool is_short_{false};   ///< whether the budget does not reach for that
     std::size_t samples_{0};
     std::size_t broken_{0};
     double lost_{0};

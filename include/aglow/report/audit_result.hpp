@@ -53,8 +53,9 @@ struct audit_options {
     std::size_t probes = 400;
     /// Standard error that a probe shall have, as a share of `target`.
     double noise = 0.5;
-    /// Most samples that all probes together may take, those extra for `class_probes` apart; fewer than wanted make the
-    /// bounds wider, never wrong. 8 for each probe and 256 for a pilot are the least.
+    /// Most samples that all probes together may take, those extra for `class_probes` too. Where they are fewer than
+    /// wanted there are fewer probes, down to 200 and 60 a class: bounds get wider, never wrong. 8 for each probe and
+    /// 256 for a pilot are the least.
     std::size_t budget = std::numeric_limits<std::size_t>::max();
     /// Largest value that a sample of the probe can have, in the picture's unit, where the host knows one: noise that
     /// looks heavy-tailed is then only slow, and the bounds on the mean error and the energy are widened by what rare

@@ -32,6 +32,7 @@ public:
         read(ground.picture);
         audit_draw<T> draw{ground, options_};
         draw.pilot(probe, run);
+        options_.class_probes = draw.class_probes();
         const std::vector<std::size_t> pixels = draw.main_pixels();
         std::vector<std::size_t> batches = draw.allotted(probe, run, pixels, audit_part::main_spread);
         records_ = draw.main(probe, run, pixels, batches, audit_part::main_probes);
