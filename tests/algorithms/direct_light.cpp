@@ -195,3 +195,41 @@ TEST_CASE("direct_light: the shares of two techniques add up to one") {
     CHECK(balance(0.0, 0.0) == 0);
     CHECK(balance(std::numeric_limits<double>::quiet_NaN(), 1.0) == 0);
 }
+
+TEST_CASE("direct_light: a lamp does not hide itself from places that see it from aside, wherever the scene lies") {
+    const auto lamp_at = [](float x) {
+        panel<float, float> lamp;
+        lamp.shape = {.corner = {x - 0.5f, -0.5f, 3},
+                      .u = {1, 0, 0},
+                      .v = {0, 1, 0},
+                      .normal = {0, 0, -1},
+                      .made_of = {.glow = 1}};
+        return lamp;
+    };
+    const toy_scene<float, float> empty;
+    for (const float place : {0.f, 10.f, 100.f, 300.f}) {
+        for (const float aside : {2.f, 6.f, 13.f, 16.f}) {
+            const panel<float, float> lamp = lamp_at(place + aside);
+            toy_scene<float, float> scene;
+            scene.rectangles = {lamp.shape};
+            const vec3<float> point{place, 0, 0};
+            const float error = position_error(place + 20);
+            const auto seen = [&](const auto& world) {
+                return direct_irradiance(world, lamp, point, vec3<float>{0, 0, 1}, error, 64, 7);
+            };
+            CAPTURE(place, aside);
+            CHECK(seen(empty) > 0);
+            CHECK(seen(scene) == seen(empty));
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("direct_light: a plate a thousandth before a light hides it", "", float, double) {
+    using T = TestType;
+    panel<T, T> lamp;
+    lamp.shape = {.corner = {T(-0.5), T(-0.5), 10}, .u = {1, 0, 0}, .v = {0, 1, 0}, .normal = {0, 0, -1}};
+    lamp.shape.made_of.glow = 1;
+    toy_scene<T, T> scene;
+    scene.rectangles = {{.corner = {-1, -1, T(9.999)}, .u = {2, 0, 0}, .v = {0, 2, 0}, .normal = {0, 0, -1}}};
+    CHECK(direct_irradiance(scene, lamp, vec3<T>{0}, vec3<T>{0, 0, 1}, position_error(T(10)), 64, 7) == 0);
+}

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <glm/vec3.hpp>
 
@@ -232,4 +233,34 @@ TEST_CASE("film: the noise of samples is in the error of the mean, as far as it 
     }
     // A standard deviation of 64 is known to 9 %.
     CHECK(std::sqrt(mean.variance()) == Approx(noise_said.mean()).epsilon(0.35));
+}
+
+TEST_CASE("film: the last of a million samples counts as much as the first") {
+    film<S> picture{1, 1};
+    const painter coin{[](const ray<float>&, const auto& numbers) {
+        return estimate<S>{S{numbers.at(1, purpose::scatter).next_1d() < 0.5f ? 0.f : 0.2f}, 0};
+    }};
+    for (int i = 0; i < 4; ++i) { picture.expose(flat_eye, coin, {.samples = 1u << 20}); }
+    // As many heads as tails, but for one, in a sequence of so many.
+    CHECK(picture.radiance(0, 0).x == Approx(0.1).epsilon(1e-5));
+}
+
+TEST_CASE("film: after an exception no sample is taken twice") {
+    film<S> picture{4, 4};
+    bool breaks = true;
+    const painter fragile{[&](const ray<float>& eye, const auto& numbers) {
+        if (breaks && eye.origin.y > 2) { throw std::runtime_error("broken"); }
+        return noise.paint(eye, numbers);
+    }};
+    CHECK_THROWS_AS(picture.expose(flat_eye, fragile, {.samples = 16}), std::runtime_error);
+    breaks = false;
+    picture.expose(flat_eye, fragile, {.samples = 16});
+    film<S> whole{4, 4};
+    whole.expose(flat_eye, fragile, {.samples = 32});
+    film<S> late{4, 4};
+    late.expose(flat_eye, fragile, {.samples = 16});
+    CHECK(picture.radiance(1, 0) == whole.radiance(1, 0));
+    CHECK(picture.error(1, 0) == whole.error(1, 0));
+    CHECK(picture.radiance(1, 3) != late.radiance(1, 3));  // what is missing stays missing
+    CHECK(picture.samples() == 32);
 }

@@ -1,5 +1,6 @@
 #include <aglow/algorithms/path_guide.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -196,6 +197,27 @@ TEST_CASE("path_guide: a furnace with a mirror and a glass ball in it is 1 / (1 
     }
     CAPTURE(mean.mean(), mean.standard_error());
     CHECK(mean.agrees(1 / (1 - albedo), 4, 1e-6));
+}
+
+TEST_CASE("path_guide: paths that the guide is not followed by gain no weight without end") {
+    // A bright room with a lamp in a glass ball: nearly every place is guided, so that a path declines again and again.
+    toy_scene<float, float> room{.rectangles = support::box_walls<float, float>(1, {.diffuse = 0.9f})};
+    room.balls = {{.centre = {0, 0, 0.5f}, .radius = 0.3f, .made_of = {.glass = 1.5f}}};
+    support::met_panel<float, float> lamp;
+    lamp.shape = {.corner = {-0.1f, -0.1f, 0.5f}, .u = {0.2f, 0, 0}, .v = {0, 0.2f, 0}, .normal = {0, 0, -1}};
+    lamp.shape.made_of.glow = 10;
+    room.rectangles.push_back(lamp.shape);
+    const path_guide guide{room, lamp};
+    const guided_path_tracer guided{room, lamp, guide};
+    const ray<float> eye{{0.1f, -0.9f, 0.2f}, glm::normalize(vec3<float>{0.1f, 0.3f, -1})};
+    float largest = 0;
+    for (std::uint64_t i = 0; i < 200'000; ++i) {
+        largest = std::max(largest, guided(eye, random_numbers<float>{{.seed = 20, .path = i}}).value);
+    }
+    // No path by surfaces alone brings more than the lamp's radiance. One that has been declined until it counts twice
+    // can be so once more, at a chance of `most`.
+    CHECK(largest > 10);
+    CHECK(static_cast<double>(largest) < 10 * 2 / (1 - path_guide_options{}.most));
 }
 
 TEMPLATE_TEST_CASE("path_guide: guided directions follow their density, which integrates to one", "", float, double) {

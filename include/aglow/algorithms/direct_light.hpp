@@ -19,14 +19,15 @@ template <std::floating_point T>
 }
 
 /// Whether nothing lies between `hit` and what is `distance` away `towards` there (infinite: the sky).
-/// Both ends are lifted off their surfaces.
+/// Both ends are lifted off their surfaces: the near one along the normal, the far one back along the way, so that it
+/// stays before a light that is looked at from aside.
 template <Intersector World, Hit H, std::floating_point T>
 [[nodiscard]] bool sees(const World& scene, const H& hit, const vec3<T>& towards, T distance, T error) {
     const vec3<T> from = lift(vec3<T>(hit.position), vec3<T>(hit.normal), towards, error);
     if (!is_finite(distance)) { return !scene.intersect(ray<T>{from, towards}); }
-    // The far end steps back by as much as the light's own surface may be off.
-    const T step = std::min(distance / 2, std::max(4 * error, distance * T(0x1p-12)));
-    return !scene.occluded(from, from + towards * (distance - step));
+    // It steps back by as much as the light's own surface may be off.
+    const T step = std::min(distance / 2, 4 * std::max(error, position_error(distance)));
+    return !scene.occluded(from, vec3<T>(hit.position) + towards * (distance - step));
 }
 
 /// The density with which `lights` look from `point` along `towards` at `hit`; 0 where they cannot tell.

@@ -57,7 +57,7 @@ public:
     /// Mean radiance of a pixel, W/(m² sr).
     [[nodiscard]] S radiance(std::size_t x, std::size_t y) const {
         const pixel& p = pixels_[y * width_ + x];
-        return p.count == 0 ? S{} : S(p.sum * (1 / static_cast<B>(p.count)));
+        return p.count == 0 ? S{} : S(p.sum * (1 / static_cast<band_of<wide_sum>>(p.count)));
     }
 
     /// A guess of a pixel's error: the mean of what the integrator guessed, and the standard error of its samples.
@@ -88,20 +88,26 @@ public:
     }
 
     /// Adds samples: `eye(film_point)` is the ray through a point in pixels, `integrator(ray, numbers)` an `estimate`
-    /// of what comes back along it; its member type `scalar` is what points and rays are made of.
+    /// of what comes back along it; its member type `scalar` is what points and rays are made of. What either throws
+    /// comes out of here, and leaves a film that some pixels have more samples of than others: its errors of pixels are
+    /// right, `error_of_mean` knows nothing of this exposure's errors in common.
     template <typename Eye, typename Integrator, Executor Run = in_sequence>
     void expose(const Eye& eye, const Integrator& integrator, const film_options& options = {}, const Run& run = {}) {
         std::atomic<std::size_t> rows{0};
         std::atomic<std::uint64_t> dropped{0};
         std::atomic<bool> stop{false};
         std::vector<double> common(height_);
+        const std::uint32_t first = samples_;
+        samples_ += options.samples;  // before the host may throw: no sample is to be taken twice
         run(height_, [&](std::size_t y) {
             if (stop) { return; }
             // Summed up here: rows next to one another share a line of memory, which threads would take from each
             // other.
             double in_common = 0;
             std::uint64_t left_out = 0;
-            for (std::size_t x = 0; x < width_; ++x) { left_out += take(x, y, eye, integrator, options, in_common); }
+            for (std::size_t x = 0; x < width_; ++x) {
+                left_out += take(x, y, eye, integrator, first, options, in_common);
+            }
             common[y] = in_common;
             dropped += left_out;
             const double share = static_cast<double>(++rows) / static_cast<double>(height_);
@@ -110,15 +116,17 @@ public:
         double all = 0;
         for (const double row : common) { all += row; }
         (options.fresh ? common2_ : common_) += options.fresh ? square(all) : all;
-        fresh_ = options.fresh && options.samples == 1 && (fresh_ || samples_ == 0);
-        samples_ += options.samples;
+        fresh_ = options.fresh && options.samples == 1 && (fresh_ || first == 0);
         dropped_ += dropped;
     }
 
 private:
+    using wide_sum = typename long_sum<S>::type;
+
     struct pixel {
-        S sum{};
-        // In double: squares of faint light leave the range of floats, and a mean far above its spread hides it.
+        // In double: the last of a million samples would be rounded off, squares of faint light leave the range of
+        // floats, and a mean far above its spread hides it.
+        wide_sum sum{};
         double guess{0};
         double level{0};
         double level2{0};
@@ -133,12 +141,12 @@ private:
     };
 
     template <typename Eye, typename Integrator>
-    std::uint64_t take(std::size_t x, std::size_t y, const Eye& eye, const Integrator& integrator,
+    std::uint64_t take(std::size_t x, std::size_t y, const Eye& eye, const Integrator& integrator, std::uint32_t first,
                        const film_options& options, double& common) {
         using T = typename Integrator::scalar;
         pixel& p = pixels_[y * width_ + x];
         const std::uint32_t before = p.count;
-        for (std::uint32_t i = samples_; i < samples_ + options.samples; ++i) {
+        for (std::uint32_t i = first; i < first + options.samples; ++i) {
             const sobol_numbers<T> numbers{{options.seed, options.pass, y * width_ + x}, i};
             const vec2<T> u = numbers.at(0, purpose::camera).next_2d();
             const estimate<S> seen =
@@ -152,7 +160,7 @@ private:
 
     static void add(pixel& p, const estimate<S>& seen) {
         const double level = static_cast<double>(max_component(seen.value));
-        p.sum = p.sum + seen.value;
+        p.sum = p.sum + wide_sum(seen.value);
         p.guess += is_finite(seen.error) ? static_cast<double>(seen.error) : 0.0;
         p.level += level;
         p.level2 += level * level;

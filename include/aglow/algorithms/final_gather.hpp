@@ -9,6 +9,7 @@
 
 #include <aglow/algorithms/layers.hpp>
 #include <aglow/algorithms/path_walk.hpp>
+#include <aglow/core/lasting.hpp>
 #include <aglow/core/sobol.hpp>
 
 namespace aglow {
@@ -20,12 +21,12 @@ struct final_gather_options {
 };
 
 /// Layer: indirect light on diffuse lobes from gather rays into `Source` (anything with `incoming(ray, numbers,
-/// rule)`).
+/// rule)`), of which it keeps a reference.
 template <typename Source>
 class gather_layer {
 public:
-    explicit gather_layer(const Source& source, const final_gather_options& options = {})
-        : source_{source}, options_{options} {}
+    explicit gather_layer(lasting<Source> source, const final_gather_options& options = {})
+        : source_{*source}, options_{options} {}
 
     template <Surface H, Numbers N>
     [[nodiscard]] estimate<surface_spectrum<H>> operator()(const H& hit, const vec3<hit_scalar<H>>& wo,
@@ -75,5 +76,8 @@ private:
     const Source& source_;
     final_gather_options options_;
 };
+
+template <typename Source>
+gather_layer(const Source&, const final_gather_options& = {}) -> gather_layer<Source>;
 
 }  // namespace aglow

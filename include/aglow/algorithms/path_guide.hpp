@@ -63,11 +63,14 @@ public:
     [[nodiscard]] bool empty() const { return lobes_.empty(); }
 
     /// A direction that scatters light towards `wo` at `hit`: by the guide or by the surface, weighed by the density of
-    /// both together.
+    /// both together. `boost` is what guides have done to the path so far: by surfaces alone where that is below
+    /// `least_boost`, since each guide that is not followed raises the path's weight, which has to end somewhere.
     template <Surface H, Sampler R>
     [[nodiscard]] std::optional<guided_sample<surface_spectrum<H>, T>> sample(const H& hit, const vec3<T>& wo,
-                                                                              R& random, lobe_set lobes) const {
-        const detail::guide_lobes<T>* guide = any(lobes, lobe_set::smooth) ? at(hit, wo, lobes) : nullptr;
+                                                                              R& random, lobe_set lobes,
+                                                                              T boost = 1) const {
+        const bool may = boost >= T(least_boost) && any(lobes, lobe_set::smooth);
+        const detail::guide_lobes<T>* guide = may ? at(hit, wo, lobes) : nullptr;
         if (!guide) { return by_surface(hit, wo, random, lobes, nullptr); }
         const T u = random.next_1d();
         if (!(u < guide->chance)) { return by_surface(hit, wo, random, lobes, guide); }
@@ -83,6 +86,7 @@ public:
     }
 
 private:
+    static constexpr double least_boost = 0.5;  // of 0 to 0.9, of least variance for the time behind glass
     static constexpr std::uint32_t none = ~0u;
     static constexpr std::uint32_t unknown = ~1u;
 

@@ -34,7 +34,7 @@ struct no_terminal {};
 struct no_guide {
     template <Surface H, Sampler R>
     [[nodiscard, gnu::always_inline]] inline auto sample(const H& hit, const vec3<hit_scalar<H>>& wo, R& random,
-                                                         lobe_set lobes) const {
+                                                         lobe_set lobes, hit_scalar<H>) const {
         return hit.sample(wo, random, lobes);
     }
 };
@@ -61,7 +61,7 @@ template <Scene World, Numbers N, typename Guide = no_guide>
     using B = band_of<S>;
     if (!any(lobes)) { return false; }
     auto scatter_numbers = numbers.at(bounce, purpose::scatter);
-    const auto next = guide.sample(hit, wo, scatter_numbers, lobes & static_lobes<World>);
+    const auto next = guide.sample(hit, wo, scatter_numbers, lobes & static_lobes<World>, at.boost);
     if (!next) { return false; }
     const vec3<T> wi = next->wi;
     const S carried = at.throughput;

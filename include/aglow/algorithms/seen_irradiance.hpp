@@ -119,10 +119,16 @@ private:
         disc_cut<T> cut{scene_, from, normal, all.radius, alike};
         if (!cut) { return {all.times(factor_), false}; }
         const found seen = map_.irradiance(point, normal, options_, [&](std::size_t i) {
-            return counts(i) && !scene_.occluded(from, map_.position(i) + normal * error_);
+            return counts(i) && !scene_.occluded(from, beside(map_.position(i), point, normal));
         });
         if (seen.radius > all.radius) { cut = disc_cut<T>{scene_, from, normal, seen.radius, alike}; }
         return {within(cut, seen), static_cast<bool>(cut)};
+    }
+
+    /// Where to look for a photon at `at`: lifted to the plane of `point` where it lies below that, as on a ball, which
+    /// would hide its own light otherwise.
+    [[nodiscard]] vec3<T> beside(const vec3<T>& at, const vec3<T>& point, const vec3<T>& normal) const {
+        return at + normal * (std::max(T(0), glm::dot(point - at, normal)) + error_);
     }
 
     /// What is `seen`, spread over the part of its disc that is.
