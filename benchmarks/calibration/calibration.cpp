@@ -59,7 +59,7 @@ aglow::audit_options audit_options(const known_scene& scene, double error) {
     aglow::audit_options options{.noise = how.noise};
     if (how.bounded) { options.sample_bound = scene.sample_bound(); }
     options.class_probes = how.class_probes;
-    options.budget = scene.budget(options.probes);
+    options.budget = scene.budget(options.probes + 3 * options.class_probes);
     options.target = how.target > 0 ? how.target : 0.97 * error;
     return options;
 }
@@ -103,7 +103,7 @@ std::size_t certified(const known_scene& scene, const judged_picture& picture, a
 void control(const known_scene& scene, const char* what, const judged_picture& picture, double target,
              double bias_target, bool should_pass) {
     aglow::audit_options options{.target = target, .probes = 1000, .sample_bound = scene.sample_bound()};
-    options.budget = scene.budget(options.probes);
+    options.budget = scene.budget(options.probes + 3 * options.class_probes);
     if (bias_target > 0) { options.bias_target = bias_target; }
     const std::size_t trials = std::min<std::size_t>(scene.how().certificates, 100);
     const std::size_t passed = certified(scene, picture, options, trials);

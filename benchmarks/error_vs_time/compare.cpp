@@ -34,8 +34,9 @@ constexpr std::string_view usage =
     "\n"
     "Exit status: 0 where nothing is worse, 1 where something is significantly worse by more than PERCENT (5; more "
     "where\n"
-    "other programs ran beside), or where a step, a seed or a whole pixel got lost, 2 where the reports cannot be "
-    "compared.\n";
+    "other programs ran beside), or where a step, a seed or a whole pixel got lost or a step's settings are others, 2 "
+    "where\n"
+    "the reports cannot be compared: other sizes, other references, nothing in common.\n";
 
 /// Prints the lines, each with `mark` before it.
 void print(const char* mark, const std::vector<std::string>& lines) {
@@ -47,7 +48,7 @@ double percentage(std::string text) {
     if (!text.empty() && text.back() == '%') { text.pop_back(); }
     double number = -1;
     const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (wrong != std::errc{} || end != text.data() + text.size() || !(number >= 0)) {
+    if (wrong != std::errc{} || end != text.data() + text.size() || !(number >= 0 && number <= 1e6)) {
         throw std::runtime_error("--smallest wants a percentage, such as 5");
     }
     return number / 100;
@@ -55,6 +56,8 @@ double percentage(std::string text) {
 
 int compare(const error_vs_time::study& before, const error_vs_time::study& after,
             const error_vs_time::gate_options& options) {
+    const auto other = error_vs_time::other_scenes(before, after);
+    if (!other.empty()) { throw std::runtime_error(other.front()); }
     const auto found = error_vs_time::differences(before, after, options);
     if (found.empty()) { throw std::runtime_error("the reports share no scene, method and step with two equal seeds"); }
     const auto lost = error_vs_time::losses(before, after);

@@ -69,12 +69,15 @@ void add(std::vector<difference>& found, difference d, std::span<const double> l
     found.push_back(std::move(d));
 }
 
-/// Each step of the first study that the second has too.
+/// What a step means: the same for all its seeds.
+const std::string& settings_of(const by_seed& runs) { return runs.begin()->second->settings; }
+
+/// Each step of the first study that the second has too, with the same settings.
 template <typename Visit>
 void for_each_common(const std::map<step, by_seed>& before, const std::map<step, by_seed>& after, const Visit& visit) {
     for (const auto& [where, runs] : before) {
         const auto now = after.find(where);
-        if (now != after.end()) { visit(where, runs, now->second); }
+        if (now != after.end() && settings_of(runs) == settings_of(now->second)) { visit(where, runs, now->second); }
     }
 }
 
@@ -149,6 +152,9 @@ std::vector<std::string> losses(const study& before, const study& after) {
     for (const auto& [where, old_runs] : steps_of(before)) {
         if (!has_scene(after, where.scene)) { continue; }
         const auto now = new_steps.find(where);
+        if (now != new_steps.end() && settings_of(old_runs) != settings_of(now->second)) {
+            lines.push_back(where.told() + ": " + settings_of(old_runs) + " before, now " + settings_of(now->second));
+        }
         for (const auto& [seed, run] : old_runs) {
             const bool there = now != new_steps.end() && now->second.contains(seed);
             const std::string name = where.told() + ", seed " + std::to_string(seed);
@@ -157,6 +163,25 @@ std::vector<std::string> losses(const study& before, const study& after) {
             if (broken > run->error.broken) {
                 lines.push_back(name + ": " + std::to_string(broken) + " broken pixels, " +
                                 std::to_string(run->error.broken) + " before");
+            }
+        }
+    }
+    return lines;
+}
+
+std::vector<std::string> other_scenes(const study& before, const study& after) {
+    std::vector<std::string> lines;
+    for (const scene_note& old : before.scenes) {
+        for (const scene_note& now : after.scenes) {
+            if (now.name != old.name) { continue; }
+            const auto size = [](const scene_note& s) {
+                return std::to_string(s.width) + "x" + std::to_string(s.height);
+            };
+            if (size(now) != size(old)) {
+                lines.push_back(old.name + ": pictures of " + size(old) + " before, now of " + size(now));
+            } else if (now.reference != old.reference ||
+                       std::abs(now.reference_relmse - old.reference_relmse) > 1e-3 * old.reference_relmse) {
+                lines.push_back(old.name + ": another reference");
             }
         }
     }

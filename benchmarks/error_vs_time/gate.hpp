@@ -39,7 +39,11 @@ struct gate_options {
 /// Whether a significant difference is a worsening larger than `options.smallest`.
 [[nodiscard]] bool worse(std::span<const difference> all, const gate_options& options = {});
 
-/// What the second study lost, a line each: steps and seeds of scenes that both have, and pixels that are broken now.
+/// Scenes of both studies whose pictures cannot be compared, for their size or their reference, a line each.
+[[nodiscard]] std::vector<std::string> other_scenes(const study& before, const study& after);
+
+/// What the second study lost, a line each: steps and seeds of scenes that both have, steps that mean something else,
+/// and pixels that are broken now.
 [[nodiscard]] std::vector<std::string> losses(const study& before, const study& after);
 
 /// In what else than their runs the studies differ, a line each: their making, and scenes that only one has.

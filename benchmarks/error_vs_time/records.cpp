@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <stdexcept>
 
 #include "error_vs_time/json.hpp"
@@ -137,6 +138,9 @@ json as_list(const Notes& notes) {
     return all;
 }
 
+/// What JSON has no number for is written as null.
+constexpr double endless = std::numeric_limits<double>::infinity();
+
 std::size_t size_of(const json& value) { return static_cast<std::size_t>(value.number()); }
 
 number_pairs numbers_from(const json& value) {
@@ -167,7 +171,7 @@ run_note run_from(const json& j) {
     r.phases = numbers_from(j["phases"]);
     r.counts = numbers_from(j["counts"]);
     r.peak_bytes = j["peak_bytes"].number();
-    for (const error_field& f : error_fields) { r.error.*f.value = j["error"][f.name].number(); }
+    for (const error_field& f : error_fields) { r.error.*f.value = j["error"][f.name].number(endless); }
     r.error.broken = size_of(j["error"]["broken"]);
     r.error.pixels = size_of(j["error"]["pixels"]);
     return r;
@@ -177,13 +181,23 @@ parts_note parts_from(const json& j) {
     return {j["scene"].text(),
             j["method"].text(),
             size_of(j["budget"]),
-            {j["bias2"].number(), j["bias2_error"].number(), j["variance"].number(), size_of(j["pictures"])}};
+            {j["bias2"].number(endless), j["bias2_error"].number(endless), j["variance"].number(endless),
+             size_of(j["pictures"])}};
 }
 
 audit_note audit_from(const json& j) {
-    return {j["scene"].text(),           j["method"].text(),      size_of(j["budget"]),    j["status"].text(),
-            j["statement"].text(),       j["target"].number(),    j["bound"].number(),     j["true_error"].number(),
-            j["bias_low"].number(),      j["bias_high"].number(), j["true_bias"].number(), j["seconds"].number(),
+    return {j["scene"].text(),
+            j["method"].text(),
+            size_of(j["budget"]),
+            j["status"].text(),
+            j["statement"].text(),
+            j["target"].number(),
+            j["bound"].number(endless),
+            j["true_error"].number(endless),
+            j["bias_low"].number(-endless),
+            j["bias_high"].number(endless),
+            j["true_bias"].number(endless),
+            j["seconds"].number(),
             j["render_seconds"].number()};
 }
 

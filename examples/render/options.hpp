@@ -36,7 +36,7 @@ struct render_options {
     std::optional<double> accuracy{};
     bool layers{false};
     bool error{false};
-    /// Most samples of that audit, those for classes of pixels apart.
+    /// Most samples of that audit.
     std::optional<std::size_t> error_samples{};
     /// The mean relative error that an audit shall certify; 0 for as many samples as told.
     double until{0};

@@ -212,6 +212,19 @@ TEST_CASE("report.json: a study comes back as it was, seeds of 64 bits included"
     CHECK_THROWS_WITH(read_report(later), "a report of version 9, not 1");
 }
 
+TEST_CASE("report.json: what is unknown is not read back as nothing") {
+    study all = synthetic::study();
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    all.audits[0].bound = all.audits[0].bias_high = endless;
+    all.audits[0].bias_low = -endless;
+    all.runs[0].error.mape = endless;
+    const study again = read_report(report_json(all));
+    CHECK(again.audits[0].bound == endless);
+    CHECK(again.audits[0].bias_low == -endless);
+    CHECK(again.audits[0].bias_high == endless);
+    CHECK(again.runs[0].error.mape == endless);
+}
+
 TEST_CASE("runs.csv: one line a run, as many fields in each as in its head") {
     const study all = synthetic::study();
     std::istringstream lines{runs_csv(all)};
@@ -407,6 +420,28 @@ TEST_CASE("gate: what got lost is named, and what else is not alike") {
     CHECK(unlike(before, after) ==
           std::vector<std::string>{"compiler: none before, now another", lost_scene + ": not in the second report"});
     CHECK(unlike(after, before).back() == lost_scene + ": not in the first report");
+}
+
+TEST_CASE("gate: steps of other settings are not compared but named, nor pictures of other sizes or references") {
+    const study before = synthetic::study();
+    CHECK(other_scenes(before, before).empty());
+    study after = before;
+    for (run_note& r : after.runs) {
+        if (r.scene == "box" && r.method == "gather-cache" && r.budget == 2) {
+            r.settings = "half of that";
+            r.error.relmse *= 3;
+        }
+    }
+    for (const difference& d : differences(before, after)) { CHECK(d.ratio == 1); }
+    const auto lost = losses(before, after);
+    REQUIRE(lost.size() == 1);
+    CHECK(lost[0] == "box, gather-cache, step 3: 16 samples, \"stratified\" before, now half of that");
+    study smaller = before;
+    smaller.scenes[0].width = 32;
+    CHECK(other_scenes(before, smaller) == std::vector<std::string>{"box: pictures of 64x64 before, now of 32x64"});
+    study judged = before;
+    judged.scenes[1].reference_relmse *= 2;
+    CHECK(other_scenes(before, judged).size() == 1);
 }
 
 TEST_CASE("seeds: no picture can have a reference's, however many there are") {

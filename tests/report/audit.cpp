@@ -158,6 +158,8 @@ TEST_CASE("audit: one NaN pixel is enough to refuse, and no probe is spent") {
     CHECK(a.status == audit_status::not_certified);
     CHECK(a.broken_pixels == 1);
     CHECK(a.samples == 0);
+    CHECK(a.mean_error_bound == std::numeric_limits<double>::infinity());
+    CHECK(a.energy_bias.high == std::numeric_limits<double>::infinity());
     REQUIRE(a.reasons.size() == 1);
 }
 
@@ -381,6 +383,27 @@ TEST_CASE("audit: a budget is kept, and costs sharpness only") {
     CHECK(rich.samples > 200'000);
     CHECK(poor.samples <= 40'000);
     CHECK(poor.mean_error_bound > rich.mean_error_bound);
+    // What cannot do is made do with the least.
+    for (const std::size_t nearly_none : {0u, 100u, 255u, 256u, 1000u}) {
+        const audit_result least = audit(f.image(), f.probe(), {.target = 0.04, .budget = nearly_none});
+        CHECK(least.samples <= 256 + 8 * 200);
+        CHECK(least.status == audit_status::inconclusive);
+    }
+}
+
+TEST_CASE("audit: pixels that are too dark are not taken for better ones by the noise of few samples") {
+    // A tenth of the pixels have a fifth of their light: |B-U| / (U + dark) of a noisy U is below that of I.
+    field f{damage::none};
+    for (std::size_t i = 0; i < field::pixels; i += 10) { f.picture[i] *= 0.2; }
+    const double truth = quantile(f.errors(), 0.95);
+    constexpr int rounds = 200;
+    int held = 0;
+    for (std::uint64_t seed = 0; seed < rounds; ++seed) {
+        const audit_result a = audit(f.image(), f.probe(), {.target = 0.05, .budget = 10'000, .seed = seed});
+        REQUIRE(a.quantile_bound);
+        held += *a.quantile_bound >= truth ? 1 : 0;
+    }
+    CHECK(held >= rounds * synthetic::least_coverage(rounds));
 }
 
 TEST_CASE("audit: a short budget is kept with rare classes too, and spent on fewer probes that see better") {

@@ -74,6 +74,15 @@ TEST_CASE("image_error: light where the whole reference is black is infinitely w
     CHECK(all.relative_q95 == inf);
 }
 
+TEST_CASE("image_error: a picture without a usable pixel is not right but wrong without end") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const image_error e = compare(seen({nan, nan}), seen({1, 2}), seen({1, 2}));
+    CHECK(e.pixels == 0);
+    CHECK(e.broken == 2);
+    CHECK(e.mape == std::numeric_limits<double>::infinity());
+    CHECK(e.relmse == std::numeric_limits<double>::infinity());
+}
+
 TEST_CASE("image_error: broken pixels are counted and left out of everything") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();

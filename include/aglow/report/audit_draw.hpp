@@ -243,7 +243,7 @@ private:
     /// What the budget allows.
     [[nodiscard]] double affordable_batch() const {
         const double left = static_cast<double>(options_.budget) - static_cast<double>(samples_);
-        return std::floor(left / sample_cost());
+        return std::max(0.0, std::floor(left / sample_cost()));
     }
 
     audited_picture<T> picture_;

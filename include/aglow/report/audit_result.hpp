@@ -45,7 +45,7 @@ struct audit_options {
     std::optional<double> bias_target{};
     /// Certify by `clipped_error_bound`, which holds for every distribution of errors, instead of `mean_error_bound`,
     /// which is sharper but can miss errors far above 100 % in so few pixels that no probe finds them (below 3 /
-    /// `probes` of them).
+    /// `probes` of them). For targets up to a half: of errors near 1 noise hides what lies above.
     bool distribution_free = false;
     /// Probability with which each statement by itself is meant to hold.
     double confidence = 0.95;
@@ -55,7 +55,7 @@ struct audit_options {
     double noise = 0.5;
     /// Most samples that all probes together may take, those extra for `class_probes` too. Where they are fewer than
     /// wanted there are fewer probes, down to 200 and 60 a class: bounds get wider, never wrong. 8 for each probe and
-    /// 256 for a pilot are the least.
+    /// 256 for a pilot are the least, and taken where it is less.
     std::size_t budget = std::numeric_limits<std::size_t>::max();
     /// Largest value that a sample of the probe can have, in the picture's unit, where the host knows one: noise that
     /// looks heavy-tailed is then only slow, and the bounds on the mean error and the energy are widened by what rare
@@ -90,13 +90,14 @@ struct audit_result {
     double quantile{0};    ///< which quantile `quantile_bound` bounds
     double dark_floor{0};  ///< δ, in the picture's unit
 
-    interval energy_bias{};          ///< Σ(B−I)/ΣI, of the mean of the channels
+    /// Σ(B−I)/ΣI, of the mean of the channels.
+    interval energy_bias{0, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double mean_error{0};            ///< estimate of the mean relative error, slightly above on average
     double likely_error{0};          ///< the same for plans: as often below as above, and no bound is made of it
     double mean_error_deviation{0};  ///< standard deviation of one probe's contribution to it
-    double mean_error_bound{0};      ///< upper bound on it
-    double mean_error_floor{0};      ///< lower bound on it
-    double clipped_error_bound{1};   ///< upper bound where errors above 1 count as 1: holds for any distribution
+    double mean_error_bound{std::numeric_limits<double>::infinity()};  ///< upper bound on it
+    double mean_error_floor{0};                                        ///< lower bound on it
+    double clipped_error_bound{1};  ///< upper bound where errors above 1 count as 1: holds for any distribution
     std::optional<double> quantile_bound{};  ///< upper bound on the `quantile` of the relative error of pixels
     std::vector<class_scale> scales{};       ///< error bar of a pixel = scale of its class times its guess
 

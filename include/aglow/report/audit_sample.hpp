@@ -147,12 +147,12 @@ public:
             [&](const probe_record& r) { return r.weight * (of_.error_by_others(r) - of_.denominator_noise2(r)); });
     }
 
-    /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in: never too small on
-    /// average.
+    /// Relative error of the pixels that were drawn uniformly, with the probe's noise left in, and what that noise may
+    /// hide in the denominator: never too small on average.
     [[nodiscard]] std::vector<double> plain_errors() const {
         std::vector<double> errors;
         for (const probe_record& r : records_) {
-            if (r.uniform) { errors.push_back(of_.error(r, every_batch)); }
+            if (r.uniform) { errors.push_back(of_.error(r, every_batch) + of_.denominator_noise2(r)); }
         }
         return errors;
     }

@@ -72,6 +72,7 @@ public:
     }
 
     [[nodiscard]] image_error result() {
+        if (relative_.empty()) { return of_nothing(); }
         image_error e{};
         const running_mean relative = mean_of(relative_);
         e.mape = relative.rejected() > 0 ? std::numeric_limits<double>::infinity() : relative.mean();
@@ -88,6 +89,17 @@ public:
     }
 
 private:
+    /// Of a picture that no pixel can be used of.
+    static image_error of_nothing() {
+        constexpr double endless = std::numeric_limits<double>::infinity();
+        image_error e{};
+        for (double* error : {&e.mape, &e.smape, &e.relmse, &e.relmse_trimmed, &e.mse, &e.rmse, &e.relative_q50,
+                              &e.relative_q95, &e.relative_q99, &e.relative_max, &e.absolute_max}) {
+            *error = endless;
+        }
+        return e;
+    }
+
     void add_quantiles(image_error& e) {
         std::sort(relative_.begin(), relative_.end());
         e.relative_q50 = sorted_quantile(relative_, 0.50);

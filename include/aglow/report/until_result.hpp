@@ -61,7 +61,7 @@ enum class until_status { reached, unreachable, out_of_work, cancelled, broken }
 /// ones of their host.
 struct until_result {
     until_status status{until_status::out_of_work};
-    audit_result certificate{};  ///< of the last claim; its confidence is that claim's own, as by `share_of_miss`
+    audit_result certificate{};  ///< of the last claim, with the confidence of all claims together
     decay_fit decay{};
     double work{0};
     double predicted_work{0};

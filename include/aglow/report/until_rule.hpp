@@ -84,11 +84,13 @@ public:
                1.1 * certifiable_error(known, {work, probes(), noise_}, known.z.front());
     }
 
-    /// Claims the target.
+    /// Claims the target. A claim gets a share of the probability to be wrong; since the claims go on until one holds,
+    /// what is told of that one is as sure as all together, and no more.
     [[nodiscard]] audit_result claim() {
         audit_options how = options_.audit;
         how.confidence = 1 - miss(++claims_);
-        const audit_result result = judged(*sample_, how);
+        audit_result result = judged(*sample_, how);
+        result.confidence = options_.audit.confidence;
         history_.set_bound(result.mean_error_bound);
         broken_ = has_broken_probes(result);
         return result;
