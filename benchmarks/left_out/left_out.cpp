@@ -1,6 +1,4 @@
 // What a matte scene pays for all that the library could do besides: time and code beside a twin written by hand.
-//   left_out [pairs] [library's object] [twin's object] [gate]
-// With `gate` it fails where the code is above 1.02; the time is for people to look at.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

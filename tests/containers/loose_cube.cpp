@@ -1,6 +1,7 @@
 #include <aglow/containers/loose_cube.hpp>
 
 #include <cmath>
+#include <limits>
 
 #include <aglow/core/random.hpp>
 
@@ -77,4 +78,19 @@ TEMPLATE_TEST_CASE("loose_cube: octants near are those whose boxes come within r
     CHECK(wrong == 0);
     CHECK(near > 5000);
     CHECK(far > 5000);
+}
+
+TEMPLATE_TEST_CASE("loose_cube: the cube around a point holds it, however near below zero", "", float, double) {
+    using T = TestType;
+    const T tiny = std::numeric_limits<T>::denorm_min();
+    const T small = std::numeric_limits<T>::min();
+    for (const T x : {-tiny, -32 * tiny, -small, -T(1e4) * small, -T(1e-20), T(0), tiny}) {
+        for (const T radius : {T(1e-3), T(10), T(5e6)}) {
+            const vec3<T> p{x, 1, -x};
+            const auto cube = detail::loose_cube<T>::around_sphere(p, radius);
+            CAPTURE(x, radius);
+            CHECK(cube.holds(p, radius));
+            CHECK(cube.doubled().holds(p, radius));
+        }
+    }
 }

@@ -473,6 +473,71 @@ TEST_CASE("irradiance_cache: freezing averages noise among neighbours and does n
     CHECK(std::abs(mean - rough_mean) < 0.01);
 }
 
+TEST_CASE("irradiance_cache: records that few rays made too dark tell no endless errors once they are smoothed") {
+    // Each of 64 rays finds the light with a chance of 3 %.
+    constexpr float chance = 0.03f;
+    double told = 0;
+    double largest = 0;
+    double rms = 0;
+    int lookups = 0;
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        random_sampler<float> random{seed};
+        irradiance_cache<float> c{10.f, by_distance(error_metric::hessian)};
+        for (int i = 0; i < 300; ++i) {
+            int met = 0;
+            for (int k = 0; k < 64; ++k) { met += random.next_1d() < chance; }
+            irradiance_estimate<float, float> e;
+            e.position = {random.next_1d() * 3, random.next_1d() * 3, 0};
+            e.irradiance = static_cast<float>(met) / (64 * chance);
+            e.relative_noise = met > 0 ? 1 / std::sqrt(static_cast<float>(met)) : 0;
+            e.mean_inverse_distance = 1 / 0.4f;
+            e.rays = 64;
+            c.insert(e);
+        }
+        const auto frozen = c.freeze();
+        for (int i = 0; i < 200; ++i) {
+            const auto a = frozen.lookup({0.5f + 2 * random.next_1d(), 0.5f + 2 * random.next_1d(), 0}, up);
+            if (!a) { continue; }
+            told += static_cast<double>(a.error);
+            largest = std::max(largest, static_cast<double>(a.error));
+            rms += square(static_cast<double>(a.irradiance) - 1);
+            ++lookups;
+        }
+    }
+    told /= lookups;
+    rms = std::sqrt(rms / lookups);
+    CAPTURE(told, largest, rms, lookups);
+    CHECK(told > rms);
+    CHECK(told < 6 * rms);
+    CHECK(largest < 10);
+}
+
+TEST_CASE("irradiance_cache: records of 1e-35 beside others of 1e3 are smoothed to finite numbers") {
+    for (const float bright : {1.f, 1e3f, 1e9f}) {
+        for (const float dark : {1e-30f, 1e-35f, 1e-37f}) {
+            irradiance_cache<float> c{10.f, by_distance(error_metric::hessian)};
+            for (const float e : {dark, bright}) {
+                irradiance_estimate<float, float> one;
+                one.position = {e == dark ? 0.f : 0.5f, 0, 0};
+                one.irradiance = e;
+                one.relative_noise = 0.1f;
+                one.mean_inverse_distance = 0.5f;
+                one.rays = 100;
+                c.insert(one);
+            }
+            const auto frozen = c.freeze();
+            CAPTURE(bright, dark);
+            CHECK(is_radiance(frozen[0].irradiance()));
+            for (const float x : {0.1f, 0.4f}) {
+                const auto a = frozen.lookup({x, 0, 0}, up);
+                REQUIRE(a);
+                CHECK(is_radiance(a.irradiance));
+                CHECK(is_finite(a.error));
+            }
+        }
+    }
+}
+
 TEST_CASE("irradiance_cache: the noise told after smoothing is the noise there is") {
     const auto constant = [](float) { return 2.f; };
     const auto frozen = noisy_floor(constant, true, 0.2f, 2).freeze();

@@ -407,3 +407,28 @@ TEST_CASE(
     e.incident = {0, 0, 0};
     CHECK(glm::length(record{e, {.radius = 1}}.incident() - e.axes.z * (2 / 3.0f)) < 1e-4f);
 }
+
+TEMPLATE_TEST_CASE("irradiance_record: another irradiance keeps the slopes relative to it", "", float, double) {
+    using T = TestType;
+    irradiance_estimate<T, T> e;
+    e.irradiance = 10;
+    e.gradients.translation = {10, 0};
+    e.rays = 100;
+    const auto dim = irradiance_record<T, T>{e, {.radius = 1}}.with_irradiance(T(1), T(0.1));
+    for (const T x : {T(0.5), T(0.9), T(-0.5)}) {
+        CHECK(dim.extrapolate({x, 0, 0}, {0, 0, 1}) == Approx(1 + x).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("irradiance_record: what falls to nothing is no less than that, of spectra of the host's too") {
+    random_sampler<double> random{4};
+    for (int i = 0; i < 20'000; ++i) {
+        irradiance_estimate<double, double> e;
+        e.irradiance = random.next_1d();
+        e.gradients.rotation = {9 * (random.next_1d() - 0.5), 9 * (random.next_1d() - 0.5)};
+        e.rays = 1;
+        const irradiance_record<double, double> record{e, {.radius = 1}};
+        const vec3<double> n = glm::normalize(vec3<double>{random.next_1d() - 0.5, random.next_1d() - 0.5, 1});
+        REQUIRE(record.extrapolate({0, 0, 0}, n) >= 0);
+    }
+}

@@ -283,6 +283,22 @@ TEST_CASE("photon_map: photons all at the origin do not divide by nothing") {
     CHECK(is_finite(e.error));
 }
 
+TEST_CASE("photon_map: a search may reach as far as one likes, and finds the nearest photons still") {
+    random_sampler<float> random{9};
+    std::vector<landed_photon<float, float>> photons;
+    for (int i = 0; i < 10'000; ++i) {
+        photons.push_back(on_floor<float, float>(random.next_1d(), random.next_1d(), 1));
+    }
+    const photon_map<float, float> map{photons};
+    const auto near = map.irradiance({0.5f, 0.5f, 0}, upf, {.count = 50});
+    for (const double far : {10.0, 1e4, 1e8, 1e15}) {
+        const auto e = map.irradiance({0.5f, 0.5f, 0}, upf, {.count = 50, .max_radius = far});
+        CAPTURE(far);
+        CHECK(e.value == near.value);
+        CHECK(e.radius == near.radius);
+    }
+}
+
 TEST_CASE("photon_map: one photon asked for is a density of two") {
     const photon_map<glm::vec3, float> map{colourful(2, 1)};
     CHECK(map.irradiance({0, 0, 0}, upf, {.count = 1}).value == map.irradiance({0, 0, 0}, upf, {.count = 2}).value);

@@ -20,9 +20,12 @@ struct loose_cube {
     /// exact.
     [[nodiscard]] static loose_cube around(const vec3<T>& p, T half) {
         const T width = 2 * half;
-        return {{(std::floor(p.x / width) + T(0.5)) * width, (std::floor(p.y / width) + T(0.5)) * width,
-                 (std::floor(p.z / width) + T(0.5)) * width},
-                half};
+        const auto middle_of = [width](T x) {
+            const T below = std::floor(x / width);
+            // A quotient of too small a number is 0, and its cube would lie on the other side.
+            return ((x < 0 ? std::min(below, T(-1)) : below) + T(0.5)) * width;
+        };
+        return {{middle_of(p.x), middle_of(p.y), middle_of(p.z)}, half};
     }
     /// The one for a first sphere: at least twice as wide.
     [[nodiscard]] static loose_cube around_sphere(const vec3<T>& centre, T radius) {

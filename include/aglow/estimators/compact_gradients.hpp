@@ -7,6 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include <aglow/concepts/spectrum.hpp>
 #include <aglow/core/vec.hpp>
@@ -51,13 +52,26 @@ public:
         if (!(below > 0)) { return moved; }
         // The smallest band of E is at least `least`, so E + s change >= 0 for this s.
         const T least = std::max(T(0), -static_cast<T>(max_component(S(irradiance * band_of<S>(-1)))));
-        return irradiance + change * (least / (least + below));
+        // Not quite all is taken away: rounding would make it less than nothing.
+        const T most = 1 - 8 * std::numeric_limits<T>::epsilon();
+        return irradiance + change * (most * least / (least + below));
     }
 
     /// The same gradients for another radius.
     [[nodiscard]] compact_gradients rescaled(T from, T to) const {
         compact_gradients result = *this;
         result.translation_ = {translation_.x * (to / from), translation_.y * (to / from)};
+        return result;
+    }
+
+    /// The same gradients relative to the irradiance, of one that is `factor` times as large.
+    [[nodiscard]] compact_gradients relit(band_of<S> factor) const {
+        const auto scaled = [factor](const tangent_vector<S>& v) {
+            return tangent_vector<S>{v.x * factor, v.y * factor};
+        };
+        compact_gradients result;
+        result.translation_ = scaled(translation_);
+        result.rotation_ = scaled(rotation_);
         return result;
     }
 
@@ -136,6 +150,9 @@ public:
         }
         return result;
     }
+
+    /// These are relative to the irradiance.
+    [[nodiscard]] compact_gradients relit(float) const { return *this; }
 
 private:
     static constexpr std::size_t bands = detail::packed_bands<S>;

