@@ -86,7 +86,7 @@ public:
     }
 
 private:
-    static constexpr double least_boost = 0.5;  // of 0 to 0.9, of least variance for the time behind glass
+    static constexpr double least_boost = 0.25;  // at 0.5 audits behind glass met heavy tails three times as often
     static constexpr std::uint32_t none = ~0u;
     static constexpr std::uint32_t unknown = ~1u;
 
