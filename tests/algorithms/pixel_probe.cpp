@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
 #include <vector>
 
+#include <aglow/algorithms/cache_integrators.hpp>
 #include <aglow/algorithms/film.hpp>
 #include <aglow/algorithms/path_guide.hpp>
 #include <aglow/algorithms/path_trace.hpp>
+#include <aglow/algorithms/photon_integrators.hpp>
 #include <aglow/report/render_until.hpp>
 
 #include "support/broken_host.hpp"
@@ -88,6 +91,25 @@ TEST_CASE("pixel_probe: faults are noted where the integrator's options say so, 
     // Of the probes alone, not of the picture before.
     CHECK(said.lost_share == Approx((own.lost() - before) / static_cast<double>(said.samples)));
     CHECK(blames_the_host(audit(seen(values), aglow::pixel_probe{eye, guided, side}, hasty)));
+}
+
+TEST_CASE("host_faults: what gather rays of a cache or a final gather meet is noted where the picture's paths note") {
+    const flawed_scene scene{room.scene, flaw::long_normal};
+    aglow::host_faults cached;
+    aglow::gather_caching_options options;
+    options.photons = {.direct = 1000, .caustic = 1000, .indirect = 5000};
+    options.caching.view = {.width = side, .height = side, .looks = 1};
+    options.caching.fill.rays = 64;
+    options.caching.paths.faults = &cached;
+    const aglow::gather_caching classical{scene, room.light, aglow::bounds<float>{rgb{-1}, rgb{1}}, eye, options};
+    CHECK(cached.count(aglow::host_fault::normal) > 100);
+    aglow::host_faults gathered;
+    const aglow::final_gathering_options smooth{.photons = options.photons, .rays = 64, .paths = {.faults = &gathered}};
+    const aglow::final_gathering integrator{scene, room.light, smooth};
+    // Straight at a sound wall: all that is broken is met by gather rays.
+    (void)integrator(aglow::ray<float>{{-0.5f, 0, 0}, {-1, 0, 0}}, aglow::random_numbers<float>{{}});
+    CHECK(gathered.count(aglow::host_fault::normal) > 4);
+    CHECK_THROWS_AS((aglow::final_gathering{scene, room.light, {.rays = 0}}), std::invalid_argument);
 }
 
 TEST_CASE("host_faults: each kind is counted with what it carried, of one fault no more than 65536 samples") {

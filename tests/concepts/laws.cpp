@@ -346,7 +346,13 @@ TEST_CASE("laws: a scene is refused for the law that it breaks") {
 // Lights.
 namespace {
 
-enum class light_flaw { none, forgets_cosine, tells_half_the_density, says_nothing_of_density };
+enum class light_flaw {
+    none,
+    forgets_cosine,
+    tells_half_the_density,
+    tells_half_the_distance,
+    says_nothing_of_density
+};
 
 /// A glowing square of radiance 2, 1 x 1, a unit above the origin, facing down.
 template <typename T>
@@ -378,12 +384,24 @@ struct panel {
         if (!(towards.z > 0)) { return std::nullopt; }
         const T cosine = wrong == light_flaw::forgets_cosine ? T(1) : towards.z;
         const T density = distance * distance / cosine;
-        return {{towards, distance, 2 / density, density}};
+        const T told = wrong == light_flaw::tells_half_the_distance ? distance / 2 : distance;
+        return {{towards, told, 2 / density, density}};
     }
     [[nodiscard]] T pdf(const vec3<T>& point, const vec3<T>& towards, const square& met) const {
         const T cosine = wrong == light_flaw::forgets_cosine ? T(1) : towards.z;
         const T told = aglow::distance2(met.position, point) / cosine;
         return wrong == light_flaw::tells_half_the_density ? told / 2 : told;
+    }
+};
+
+/// A matte scene that says that it has mirrors alone.
+struct narrow_panel : panel<float> {
+    static constexpr aglow::lobe_set possible_lobes = aglow::lobe_set::specular;
+
+    [[nodiscard]] auto intersect(const aglow::ray<float>& r) const {
+        auto found = panel<float>::intersect(r);
+        if (found) { found->albedo = 0.5f; }
+        return found;
     }
 };
 
@@ -417,6 +435,12 @@ TEMPLATE_TEST_CASE("laws: lawful lights are accepted", "", float, double) {
     accepted(laws::illuminator_meets_rays(lamp, lamp, vec3<T>{T(0.7), T(0.2), 0}, glm::normalize(vec3<T>{-1, 0, 1})));
 }
 
+TEST_CASE("laws: a scene is refused whose hits have lobes that it says it cannot have") {
+    const aglow::bounds<float> box{{-1, -1, -1}, {1, 1, 2}};
+    accepted(laws::intersector(panel<float>{}, box));
+    refused(laws::intersector(narrow_panel{}, box), "lobes that the scene says it cannot have");
+}
+
 TEST_CASE("laws: a light is refused for the law that it breaks") {
     using colour = archetypes::spectrum<double>;
     const colour intensity = colour::of(2, 0.5);
@@ -431,4 +455,5 @@ TEST_CASE("laws: a light is refused for the law that it breaks") {
     };
     check(light_flaw::forgets_cosine, "mean is not what rays meet");
     check(light_flaw::tells_half_the_density, "asked for the same direction");
+    check(light_flaw::tells_half_the_distance, "but the light is met after");
 }

@@ -511,6 +511,10 @@ bool check_ray(checks& law, const Scene& scene, const aglow::ray<T>& r) {
                 double(glm::length(r.origin + r.direction * t - p)), " off the ray, allowed ", double(4 * error),
                 where);
     law.require(is_unit(n), "intersect: the normal ", n, " is not unit", where);
+    if constexpr (aglow::Surface<aglow::hit_of<Scene>>) {
+        law.require(!any(found->lobes() & ~aglow::possible_lobes(scene)),
+                    "possible_lobes: a hit has lobes that the scene says it cannot have", where);
+    }
     // Flat to the ray, a place and its depth say little of each other.
     const T facing = std::abs(glm::dot(n, r.direction));
     if (facing < T(0.05) || t < 100 * error) { return true; }
@@ -639,6 +643,12 @@ void check_look(checks& law, const Look& look, const Light& light, const Scene& 
     law.require(aglow::is_radiance(look->radiance_over_pdf), "illuminate: radiance negative, infinite or NaN");
     if (!(density > 0)) { return; }
     const double told = density_towards(light, scene, point, towards);
+    const auto met = scene.intersect({point, towards});
+    if (told > 0 && met && aglow::is_finite(T(look->distance))) {
+        const double way = double(glm::length(vec3<T>(met->position) - point));
+        law.require(std::abs(double(look->distance) - way) <= tolerance * way, "illuminate: distance ",
+                    double(look->distance), ", but the light is met after ", way, ", towards ", towards);
+    }
     // 0: the ray met something else than the light, which is in its right.
     law.require(told <= 0 || std::abs(told - density) <= tolerance * density, "illuminate: pdf = ", density,
                 ", but asked for the same direction the light says ", told, ", towards ", towards);

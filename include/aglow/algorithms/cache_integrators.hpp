@@ -258,7 +258,7 @@ public:
 
 private:
     [[nodiscard]] caustic_reader<photon_source<World, Lights>, spectrum, scalar> reader() const {
-        return {{scene_, lights_, base_.points(), options_.source},
+        return {{scene_, lights_, base_.points(), detail::noting(options_.source, options_.caching.paths)},
                 base_.caustics(),
                 base_.maps().reflected,
                 options_.reflected_density};

@@ -66,7 +66,7 @@ private:
         case host_fault::weight: return "scattering weights that are no light";
         case host_fault::direction: return "scattered directions that are not unit";
         case host_fault::radiance: return "radiance that is no light";
-        case host_fault::emission: return "particles that start nowhere";
+        case host_fault::emission: return "particles that start nowhere or fly in no unit direction";
         default: return "particles whose power is no light";
     }
 }

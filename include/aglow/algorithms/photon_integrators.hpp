@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include <aglow/algorithms/final_gather.hpp>
@@ -162,7 +163,7 @@ public:
     using spectrum = spectrum_of<World>;
     using scalar = scalar_of<World>;
 
-    /// `progress` may cut the photons and their irradiance short.
+    /// `progress` may cut the photons and their irradiance short. Throws `std::invalid_argument` for no rays.
     template <Executor Run = in_sequence>
     final_gathering(lasting<World> scene, lasting<Lights> lights, const final_gathering_options& options = {},
                     const Run& run = {}, const preparation_progress& progress = {})
@@ -171,12 +172,15 @@ public:
                                                                      options.photons,
                                                                      options.irradiance,
                                                                      run,
-                                                                     progress} {}
+                                                                     progress} {
+        if (options.rays == 0) { throw std::invalid_argument("aglow: rays is 0; a final gather needs 1 at least"); }
+    }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
-        const photon_source<World, Lights> source{scene_, lights_, base_.points(), options_.source};
+        const photon_source<World, Lights> source{scene_, lights_, base_.points(),
+                                                  detail::noting(options_.source, options_.paths)};
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
                                map_layer<spectrum, scalar>{base_.maps().reflected, options_.reflected_density},

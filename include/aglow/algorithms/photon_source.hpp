@@ -19,6 +19,16 @@ struct photon_source_options {
     path_options paths{};  ///< for the rays that go on
 };
 
+namespace detail {
+
+/// `options`, with faults noted where those of the picture's own paths are, if nowhere else.
+[[nodiscard]] inline photon_source_options noting(photon_source_options options, const path_options& paths) {
+    if (!options.paths.faults) { options.paths.faults = paths.faults; }
+    return options;
+}
+
+}  // namespace detail
+
 /// A source of incoming light: mirrors and gloss are followed, diffuse surfaces read from the irradiance points. Keeps
 /// references; `const`, safe from many threads.
 template <Scene World, Illuminator Lights>

@@ -36,11 +36,12 @@ template <typename T>
     return is_finite(norm2) && norm2 > T(0.99) && norm2 < T(1.01);
 }
 
-/// Whether a hit whose position may be off by `error` is at a place: finite, and not behind the ray.
+/// Whether a hit whose position may be off by `error` is at a place: finite, and not behind the ray. No error is
+/// below zero.
 template <Hit H, typename T>
 [[nodiscard]] inline bool is_placed(const H& hit, const ray<T>& from, T error) {
     const T along = glm::dot(vec3<T>(hit.position) - from.origin, from.direction);
-    return is_finite(along) && along >= -error;
+    return is_finite(along) && error >= 0 && along >= -error;
 }
 
 /// Whether a hit can be trusted: finite place, unit normal, not behind the ray.

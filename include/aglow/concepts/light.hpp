@@ -31,16 +31,18 @@ struct illumination {
     T pdf{};
 };
 
-/// A light that sends out particles: what photon tracing asks.
-/// Must be true: the mean of `power` is the light's power in watts.
+/// A light that sends out particles: what photon tracing asks. `random` is any `Sampler`: take it as a template. Member
+/// type `scalar` where it is not float, for rays and points.
+/// Must be true: the mean of `power` is the light's power in watts; particles leave by place and direction as radiance
+/// times cosine does, so that what arrives anywhere is what `illuminate` finds there.
 template <typename L>
 concept Emitter = requires(const L& light, random_sampler<scalar_of<L>>& random) {
     requires Spectrum<std::remove_cvref_t<decltype(light.emit(random).power)>>;
     { light.emit(random).path } -> std::convertible_to<ray<scalar_of<L>>>;
 };
 
-/// A light that can be looked at: what direct light asks. `illuminate(point, random)` is an optional-like
-/// `illumination`, empty where the light cannot shine on the point.
+/// A light that can be looked at: what direct light asks, with any `Sampler`. `illuminate(point, random)` is an
+/// optional-like `illumination`, empty where the light cannot shine on the point.
 /// - optional `pdf(point, towards, hit)`: the density per steradian with which `illuminate(point)` looks at `hit`, met
 ///   from `point` along `towards`; 0 for what is no light. With it, emission that scattered rays meet is weighed in
 ///   (multiple importance sampling); without it, only what `illuminate` cannot find (seen by the eye or in a mirror)

@@ -79,7 +79,8 @@ struct scatter_sample {
 ///
 /// - `lobes()`: the lobes that this point has.
 /// - `evaluate(wo, wi, lobes)`: f in 1/sr, of those lobes; specular ones count nothing.
-/// - `sample(wo, random, lobes)`: an optional `scatter_sample`; empty where nothing scatters.
+/// - `sample(wo, random, lobes)`: an optional `scatter_sample`; empty where nothing scatters. `random` is any
+///   `Sampler`: a virtual material draws its numbers first and hands them on.
 /// - `pdf(wo, wi, lobes)`: the density of `sample`, specular lobes apart (they take their share of the probability).
 /// - optional `emitted(wo)`: radiance that leaves towards `wo` by itself, W/(m² sr).
 /// - optional `adjoint(wo, wi)`: by what a specular or sampled `weight` differs when light, not importance, comes along
