@@ -270,7 +270,7 @@ TEST_CASE("laws: a surface is refused for the law that it breaks") {
 // Scenes.
 namespace {
 
-enum class scene_flaw { none, farthest, reach_ignored, long_normals, off_the_ray, one_way, one_thread };
+enum class scene_flaw { none, farthest, reach_ignored, long_normals, turned_normals, off_the_ray, one_way, one_thread };
 
 /// Three balls, black and solid.
 template <typename T>
@@ -300,7 +300,8 @@ struct balls {
         const vec3<T> n = glm::normalize(r.origin + r.direction * nearest - met->centre);
         vec3<T> p = met->centre + n * met->radius;
         if (wrong == scene_flaw::off_the_ray) { p = p + vec3<T>(T(0.001)); }
-        const T length = wrong == scene_flaw::long_normals ? T(1.01) : T(1);
+        const bool turns = wrong == scene_flaw::turned_normals && glm::dot(n, r.direction) > 0;
+        const T length = wrong == scene_flaw::long_normals ? T(1.01) : T(turns ? -1 : 1);
         return archetypes::hit<T>{{p.x, p.y, p.z}, archetypes::direction<T>{n * length}};
     }
     [[nodiscard]] bool occluded(const vec3<T>& a, const vec3<T>& b) const {
@@ -337,6 +338,7 @@ TEST_CASE("laws: a scene is refused for the law that it breaks") {
     check(scene_flaw::farthest, "not the nearest");
     check(scene_flaw::reach_ignored, "not the nearest");
     check(scene_flaw::long_normals, "is not unit");
+    check(scene_flaw::turned_normals, "must be the same from both sides");
     check(scene_flaw::off_the_ray, "off the ray");
     check(scene_flaw::one_way, "not symmetric");
     check(scene_flaw::one_thread, "from several threads");

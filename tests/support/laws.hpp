@@ -531,6 +531,21 @@ bool check_ray(checks& law, const Scene& scene, const aglow::ray<T>& r) {
     return nothing_nearer && same && free_back && seen;
 }
 
+/// Whether what a ray meets has the same normal where it is met from behind too, if it is.
+template <aglow::Intersector Scene, typename T = aglow::scalar_of<Scene>>
+bool keeps_normal(const Scene& scene, const aglow::ray<T>& r) {
+    const auto found = scene.intersect(r);
+    if (!found) { return true; }
+    const vec3<T> p = found->position;
+    const vec3<T> n = found->normal;
+    const T facing = std::abs(glm::dot(n, r.direction));
+    if (facing < T(0.05)) { return true; }
+    const T slack = 8 * aglow::error_of(*found, r.origin) / facing;
+    const auto behind = scene.intersect({p + r.direction * (2 * slack), -r.direction, 4 * slack});
+    if (!behind || glm::length(vec3<T>(behind->position) - p) > slack) { return true; }
+    return glm::dot(n, vec3<T>(behind->normal)) > 0;
+}
+
 /// Two points: the answer is the same from both, and `intersect` gives it too.
 template <aglow::Intersector Scene, typename T = aglow::scalar_of<Scene>>
 bool check_segment(const Scene& scene, const vec3<T>& a, const vec3<T>& b) {
@@ -543,9 +558,9 @@ bool check_segment(const Scene& scene, const vec3<T>& a, const vec3<T>& b) {
 
 }  // namespace detail
 
-/// An `Intersector`: hits on the ray, with unit normals, the nearest ones (told by shooting again, forth and back);
-/// `occluded` symmetric and of one mind with `intersect`; the same answers, bit by bit, from several threads at once.
-/// Rays start evenly in `box`.
+/// An `Intersector`: hits on the ray, with unit normals that are the same from both sides, the nearest ones (told by
+/// shooting again, forth and back); `occluded` symmetric and of one mind with `intersect`; the same answers, bit by
+/// bit, from several threads at once. Rays start evenly in `box`.
 template <aglow::Intersector Scene>
 verdict intersector(const Scene& scene, const aglow::bounds<aglow::scalar_of<Scene>>& box,
                     const intersector_options& options = {}) {
@@ -553,6 +568,7 @@ verdict intersector(const Scene& scene, const aglow::bounds<aglow::scalar_of<Sce
     detail::checks law;
     std::size_t hits = 0;
     std::size_t rays_at_odds = 0;
+    std::size_t normals_at_odds = 0;
     std::size_t segments_at_odds = 0;
     std::vector<detail::answer<T>> answers(options.rays);
     const auto ray_of = [&](std::size_t i) { return detail::ray_in(box, options.seed, i); };
@@ -561,12 +577,15 @@ verdict intersector(const Scene& scene, const aglow::bounds<aglow::scalar_of<Sce
         answers[i] = detail::ask(scene, ray_of(i), end_of(i));
         hits += answers[i].hit ? 1 : 0;
         rays_at_odds += detail::check_ray(law, scene, ray_of(i)) ? 0 : 1;
+        normals_at_odds += detail::keeps_normal(scene, ray_of(i)) ? 0 : 1;
         segments_at_odds += detail::check_segment(scene, ray_of(i).origin, end_of(i)) ? 0 : 1;
     }
     const auto few = static_cast<std::size_t>(options.grazing_share * double(options.rays));
     law.require(hits > 0, "intersect: not one of ", options.rays, " rays hits anything: nothing is shown");
     law.require(rays_at_odds <= few, "intersect: ", rays_at_odds, " of ", hits,
                 " hits are not the nearest, or not seen from where they were shot");
+    law.require(normals_at_odds <= few, "intersect: ", normals_at_odds, " of ", hits,
+                " normals turn to where the ray comes from: they must be the same from both sides");
     law.require(segments_at_odds <= few, "occluded: ", segments_at_odds, " of ", options.rays,
                 " answers are not symmetric, or differ from intersect's");
     if (!law.ok()) { return law.result(); }
