@@ -26,8 +26,8 @@ float direct(const matte_room& scene, const centre_bulb& light, const matte_room
     if (!aglow::is_radiance(radiance) || radiance == 0) { return 0; }
     const point from = aglow::lift(hit.position, hit.normal, seen->towards, error);
     if (!aglow::is_finite(seen->distance)) { return scene.intersect({from, seen->towards}) ? 0.0f : radiance; }
-    const float step = std::min(seen->distance / 2, std::max(4 * error, seen->distance * 0x1p-12f));
-    return scene.occluded(from, from + seen->towards * (seen->distance - step)) ? 0.0f : radiance;
+    const float step = std::min(seen->distance / 2, 4 * std::max(error, aglow::position_error(seen->distance)));
+    return scene.occluded(from, hit.position + seen->towards * (seen->distance - step)) ? 0.0f : radiance;
 }
 
 float trace(const matte_room& scene, const centre_bulb& light, const aglow::random_numbers<float>& numbers) {

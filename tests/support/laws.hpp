@@ -663,7 +663,9 @@ void check_look(checks& law, const Look& look, const Light& light, const Scene& 
     if (!(density > 0)) { return; }
     const double told = density_towards(light, scene, point, towards);
     const auto met = scene.intersect({point, towards});
-    if (told > 0 && met && aglow::is_finite(T(look->distance))) {
+    // At the rim of a light a place and its distance say little of each other.
+    const bool plain = told > 0 && met && std::abs(glm::dot(vec3<T>(met->normal), towards)) > T(0.05);
+    if (plain && aglow::is_finite(T(look->distance))) {
         const double way = double(glm::length(vec3<T>(met->position) - point));
         law.require(std::abs(double(look->distance) - way) <= tolerance * way, "illuminate: distance ",
                     double(look->distance), ", but the light is met after ", way, ", towards ", towards);

@@ -26,8 +26,8 @@ template <Intersector World, Hit H, std::floating_point T>
     const vec3<T> from = lift(vec3<T>(hit.position), vec3<T>(hit.normal), towards, error);
     if (!is_finite(distance)) { return !scene.intersect(ray<T>{from, towards}); }
     // It steps back by as much as the light's own surface may be off.
-    const T step = std::min(distance / 2, 4 * std::max(error, position_error(distance)));
-    return !scene.occluded(from, vec3<T>(hit.position) + towards * (distance - step));
+    const T step = 4 * std::max(error, position_error(distance));
+    return !scene.occluded(from, vec3<T>(hit.position) + towards * std::max(distance / 2, distance - step));
 }
 
 /// The density with which `lights` look from `point` along `towards` at `hit`; 0 where they cannot tell.

@@ -41,7 +41,11 @@ template <typename T>
 template <Hit H, typename T>
 [[nodiscard]] inline bool is_placed(const H& hit, const ray<T>& from, T error) {
     const T along = glm::dot(vec3<T>(hit.position) - from.origin, from.direction);
-    return is_finite(along) && error >= 0 && along >= -error;
+    // Only what a host tells by itself can be below zero.
+    if constexpr (requires { hit.position_error; }) {
+        if (!(error >= 0)) { return false; }
+    }
+    return is_finite(along) && along >= -error;
 }
 
 /// Whether a hit can be trusted: finite place, unit normal, not behind the ray.
