@@ -201,14 +201,14 @@ TEST_CASE("path_guide: a furnace with a mirror and a glass ball in it is 1 / (1 
 
 TEST_CASE("path_guide: paths that the guide is not followed by gain no weight without end") {
     // A bright room with a lamp in a glass ball: nearly every place is guided, so that a path declines again and again.
-    toy_scene<float, float> room{.rectangles = support::box_walls<float, float>(1, {.diffuse = 0.9f})};
-    room.balls = {{.centre = {0, 0, 0.5f}, .radius = 0.3f, .made_of = {.glass = 1.5f}}};
+    toy_scene<float, float> bright_room{.rectangles = support::box_walls<float, float>(1, {.diffuse = 0.9f})};
+    bright_room.balls = {{.centre = {0, 0, 0.5f}, .radius = 0.3f, .made_of = {.glass = 1.5f}}};
     support::met_panel<float, float> lamp;
     lamp.shape = {.corner = {-0.1f, -0.1f, 0.5f}, .u = {0.2f, 0, 0}, .v = {0, 0.2f, 0}, .normal = {0, 0, -1}};
     lamp.shape.made_of.glow = 10;
-    room.rectangles.push_back(lamp.shape);
-    const path_guide guide{room, lamp};
-    const guided_path_tracer guided{room, lamp, guide};
+    bright_room.rectangles.push_back(lamp.shape);
+    const path_guide guide{bright_room, lamp};
+    const guided_path_tracer guided{bright_room, lamp, guide};
     const ray<float> eye{{0.1f, -0.9f, 0.2f}, glm::normalize(vec3<float>{0.1f, 0.3f, -1})};
     float largest = 0;
     for (std::uint64_t i = 0; i < 200'000; ++i) {
