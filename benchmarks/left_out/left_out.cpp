@@ -32,10 +32,9 @@ long code_bytes(const std::string& object) {
 
 constexpr std::string_view usage =
     "usage: left_out [PAIRS] [LIBRARY.o TWIN.o] [--gate]\n"
-    "The time that the library takes on a matte scene over that of a twin written by hand, median of PAIRS (41) side "
-    "by\n"
-    "side, and the same of their code where the objects are named. With --gate it fails where the code is above 1.02;\n"
-    "the time is for people to look at.\n";
+    "The time that the library takes on a matte scene over that of a twin written by hand, median of PAIRS (41)\n"
+    "side by side, and the same of their code where the objects are named. With --gate it fails where the code is\n"
+    "above 1.02; the time is for people to look at.\n";
 
 struct question {
     std::size_t pairs{41};

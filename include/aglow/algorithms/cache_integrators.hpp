@@ -236,6 +236,7 @@ public:
                                                                      options.irradiance,
                                                                      run,
                                                                      progress} {
+        detail::note_with(options_.caching.paths, options_.source);
         shared_ = base_.points().shared() + detail::cache_for(scene_, scene_bounds, eye, reader(), options.caching, run,
                                                               progress, cache_, filled_);
     }
@@ -258,7 +259,7 @@ public:
 
 private:
     [[nodiscard]] caustic_reader<photon_source<World, Lights>, spectrum, scalar> reader() const {
-        return {{scene_, lights_, base_.points(), detail::noting(options_.source, options_.caching.paths)},
+        return {{scene_, lights_, base_.points(), options_.source},
                 base_.caustics(),
                 base_.maps().reflected,
                 options_.reflected_density};

@@ -174,13 +174,13 @@ public:
                                                                      run,
                                                                      progress} {
         if (options.rays == 0) { throw std::invalid_argument("aglow: rays is 0; a final gather needs 1 at least"); }
+        detail::note_with(options_.paths, options_.source);
     }
 
     /// Radiance that comes back along `eye`, W/(m² sr), and a guess of its error.
     template <Numbers N>
     [[nodiscard]] estimate<spectrum> operator()(const ray<scalar>& eye, const N& numbers) const {
-        const photon_source<World, Lights> source{scene_, lights_, base_.points(),
-                                                  detail::noting(options_.source, options_.paths)};
+        const photon_source<World, Lights> source{scene_, lights_, base_.points(), options_.source};
         const layer_sum layers{direct_layer{scene_, lights_, lobe_set::smooth, options_.paths.faults},
                                map_layer<spectrum, scalar>{base_.maps().caustic, options_.density},
                                map_layer<spectrum, scalar>{base_.maps().reflected, options_.reflected_density},

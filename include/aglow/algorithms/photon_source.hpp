@@ -21,10 +21,9 @@ struct photon_source_options {
 
 namespace detail {
 
-/// `options`, with faults noted where those of the picture's own paths are, if nowhere else.
-[[nodiscard]] inline photon_source_options noting(photon_source_options options, const path_options& paths) {
-    if (!options.paths.faults) { options.paths.faults = paths.faults; }
-    return options;
+/// Notes faults where those of the picture's own paths are, if nowhere else.
+inline void note_with(const path_options& paths, photon_source_options& source) {
+    if (!source.paths.faults) { source.paths.faults = paths.faults; }
 }
 
 }  // namespace detail

@@ -7,6 +7,7 @@
 
 #include <aglow/algorithms/host_faults.hpp>
 #include <aglow/concepts/light.hpp>
+#include <aglow/concepts/spectrum.hpp>
 #include <aglow/core/lasting.hpp>
 #include <aglow/core/sobol.hpp>
 
@@ -49,14 +50,15 @@ private:
     [[nodiscard]] spectrum mean_of(const Integrator& integrator, std::size_t pixel, std::uint64_t seed,
                                    std::size_t count) const {
         using T = typename Integrator::scalar;
-        spectrum sum{};
+        using wide_sum = typename long_sum<spectrum>::type;
+        wide_sum sum{};
         for (std::uint32_t i = 0; i < count; ++i) {
             const sobol_numbers<T> numbers{{mix(seed, 1), seed, pixel}, i};
             const vec2<T> u = numbers.at(0, purpose::camera).next_2d();
             const vec2<T> film{static_cast<T>(pixel % width_) + u.x, static_cast<T>(pixel / width_) + u.y};
-            sum = sum + integrator(eye_(film), numbers).value;
+            sum = sum + wide_sum(integrator(eye_(film), numbers).value);
         }
-        return sum * (1 / static_cast<band_of<spectrum>>(count));
+        return spectrum(sum * (1 / static_cast<band_of<wide_sum>>(count)));
     }
 
     const Eye& eye_;

@@ -36,17 +36,6 @@ struct photon_block {
     energy_ledger<S> ledger{};
 };
 
-/// The relative noise of the sum of `paths` numbers: half the way to where the sum may lie with 95 % confidence. Few
-/// paths that bounce for long, as between white walls, bring many photons and know little.
-[[nodiscard]] inline double shared_noise(double paths, double sum, double sum2) {
-    const double degrees = std::max(1.0, paths - 1);
-    // At or above Student's quantile over 2, for any number of degrees of freedom.
-    const double few = 1 + 1.2 / degrees + 4.2 / square(degrees);
-    if (paths < 2) { return few; }
-    const double excess = paths * (sum2 / sum / sum) - 1;
-    return few * std::sqrt(std::max(0.0, excess) / degrees);
-}
-
 /// Traces the photons of one call of `trace_photons`, step by step.
 template <Scene World, Emitter Lights, Executor Run>
 class photon_tracer {

@@ -75,7 +75,7 @@ struct approach_kernel {
             for (kd_probe<T>& probe : probes) {
                 step_home<P>(tree, probe, l);
                 if (level == 2) { probe.elsewhere = probe.home[2] != std::exchange(last, probe.home[2]); }
-                if (probe.elsewhere && level > 1) { prefetch_all(tree.node(level - 1, probe.home[l - 1])); }
+                if (probe.elsewhere && level > 1) { simd::prefetch_all(tree.node(level - 1, probe.home[l - 1])); }
             }
         }
         for (std::size_t i = 0; i < probes.size(); ++i) {

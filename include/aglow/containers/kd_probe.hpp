@@ -74,11 +74,6 @@ struct go_home_kernel {
     }
 };
 
-template <typename U>
-void prefetch_all(const U& what) {
-    for (std::size_t i = 0; i < sizeof(U); i += 64) { simd::prefetch(reinterpret_cast<const char*>(&what) + i); }
-}
-
 /// As go_home, and sees whether that is far from where the probe lived before: then it asks for its leaves ahead.
 struct move_home_kernel {
     template <typename P, typename T>
@@ -86,7 +81,7 @@ struct move_home_kernel {
         const std::uint32_t last = probe.home[2];
         go_home_kernel::run<P>(tree, probe);
         probe.elsewhere = probe.home[2] != last;
-        if (probe.elsewhere) { prefetch_all(tree.leaves[probe.home[0]]); }
+        if (probe.elsewhere) { simd::prefetch_all(tree.leaves[probe.home[0]]); }
     }
 };
 

@@ -123,9 +123,9 @@ void prefetch_listed(const kd_storage<T>& tree, const kd_probe<T>& probe, int le
     for (std::uint32_t i = probe.next[l]; i < probe.count[l]; ++i) {
         const std::uint32_t n = probe.open[l][i];
         if (level == 0) {
-            prefetch_all(tree.leaves[n]);
+            simd::prefetch_all(tree.leaves[n]);
         } else {
-            prefetch_all(tree.node(level, n));
+            simd::prefetch_all(tree.node(level, n));
         }
     }
 }

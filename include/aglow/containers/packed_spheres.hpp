@@ -184,13 +184,8 @@ private:
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (i > 0 && lists[i] == lists[i - 1]) { continue; }
             directory_.visit_lists(lists[i], [&](const std::uint32_t* numbers, std::uint32_t boxes) {
-                for (std::uint32_t k = 0; k < boxes; ++k) { expect(blocks_[numbers[k]]); }
+                for (std::uint32_t k = 0; k < boxes; ++k) { simd::prefetch_all(blocks_[numbers[k]]); }
             });
-        }
-    }
-    static void expect(const block& b) {
-        for (std::size_t at = 0; at < sizeof(block); at += 64) {
-            simd::prefetch(reinterpret_cast<const char*>(&b) + at);
         }
     }
 

@@ -35,6 +35,12 @@ inline void prefetch([[maybe_unused]] const void* address) {
 #endif
 }
 
+/// The same for all of `what`.
+template <typename U>
+void prefetch_all(const U& what) {
+    for (std::size_t i = 0; i < sizeof(U); i += 64) { prefetch(reinterpret_cast<const char*>(&what) + i); }
+}
+
 /// `x`, rounded to a `T` and hidden from the optimiser, which else may fuse a product with the sum it goes into or
 /// reorder sums (-ffp-contract, -ffast-math): what stands in a `rounded` has the same bits under every flag.
 template <typename T>

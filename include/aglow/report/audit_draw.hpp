@@ -28,6 +28,11 @@ inline constexpr std::uint64_t anew = 1000;
 inline constexpr std::uint64_t further = 2000;
 }  // namespace audit_part
 
+/// Whether patience reaches for four times so many samples of a probe.
+[[nodiscard]] inline bool is_patient(const audit_options& options, std::size_t samples) {
+    return 4 * static_cast<double>(samples) <= options.patience / square(options.noise * options.target);
+}
+
 /// Chooses pixels, deals samples out to them and draws their probes. Expects options that were checked.
 template <std::floating_point T>
 class audit_draw {
@@ -89,29 +94,9 @@ public:
         return pixels;
     }
 
-    /// How many probes a class gets at least.
+    /// How many probes a class gets at least, and the further pixels that the pilot found to be needed for that.
     [[nodiscard]] std::size_t class_probes() const { return options_.class_probes; }
-
-    /// Further pixels of classes that the uniform draw hit too seldom.
-    [[nodiscard]] std::vector<std::size_t> pixels_of_rare_classes() const {
-        std::vector<std::size_t> pixels;
-        if (picture_.classes.empty()) { return pixels; }
-        std::vector<class_list> hits;
-        for (const std::size_t i : uniform_pixels(uniform_, audit_part::main_probes)) {
-            members_of(hits, picture_.classes[i]).push_back(i);
-        }
-        std::vector<class_list> members;
-        for (std::size_t i = 0; i < picture_.classes.size(); ++i) {
-            const std::uint32_t id = picture_.classes[i];
-            if (members_of(hits, id).size() < options_.class_probes) { members_of(members, id).push_back(i); }
-        }
-        for (const auto& [id, own] : members) {
-            for (std::size_t k = members_of(hits, id).size(); k < options_.class_probes; ++k) {
-                pixels.push_back(own[drawn(audit_part::extra_probes, pixels.size(), own.size())]);
-            }
-        }
-        return pixels;
-    }
+    [[nodiscard]] const std::vector<std::size_t>& rare_pixels() const { return rare_; }
 
     /// Samples per batch of each probe, `samples_per_batch()` on average: most where the noise is largest beside the
     /// light, as Neyman (1934) shares a sample among strata. A look of its own tells, so that the probes stay unbiased.
@@ -203,14 +188,32 @@ private:
     }
 
     /// Whether patience reaches for four times the samples.
-    [[nodiscard]] bool is_patient() const {
-        const double most = options_.patience / square(options_.noise * options_.target);
-        return 4 * static_cast<double>(per_batch_) * probe_batches <= most;
+    [[nodiscard]] bool is_patient() const { return detail::is_patient(options_, per_batch_ * probe_batches); }
+
+    /// Further pixels of classes that the uniform draw hits too seldom.
+    [[nodiscard]] std::vector<std::size_t> pixels_of_rare_classes() const {
+        std::vector<std::size_t> pixels;
+        if (picture_.classes.empty()) { return pixels; }
+        std::vector<class_list> hits;
+        for (const std::size_t i : uniform_pixels(uniform_, audit_part::main_probes)) {
+            members_of(hits, picture_.classes[i]).push_back(i);
+        }
+        std::vector<class_list> members;
+        for (std::size_t i = 0; i < picture_.classes.size(); ++i) {
+            const std::uint32_t id = picture_.classes[i];
+            if (members_of(hits, id).size() < options_.class_probes) { members_of(members, id).push_back(i); }
+        }
+        for (const auto& [id, own] : members) {
+            for (std::size_t k = members_of(hits, id).size(); k < options_.class_probes; ++k) {
+                pixels.push_back(own[drawn(audit_part::extra_probes, pixels.size(), own.size())]);
+            }
+        }
+        return pixels;
     }
 
     /// Where the budget is short there are fewer probes: few that see well tell more than many that see badly.
     void fit_to_budget() {
-        rare_ = pixels_of_rare_classes().size();
+        rare_ = pixels_of_rare_classes();
         wanted_cost_ = sample_cost();
         const double share = affordable_batch() / wanted_;
         is_short_ = share < 1;
@@ -221,7 +224,7 @@ private:
             options_.probes = fewer(options_.probes, least_probes);
             options_.class_probes = fewer(options_.class_probes, least_class_probes);
             uniform_ = uniform_of(options_.probes);
-            rare_ = pixels_of_rare_classes().size();
+            rare_ = pixels_of_rare_classes();
         }
         per_batch_ = allowed_batch();
     }
@@ -232,7 +235,7 @@ private:
 
     /// Samples of all probes for one in a batch, those of the look that shares them out included.
     [[nodiscard]] double sample_cost() const {
-        return 1.125 * static_cast<double>((options_.probes + rare_) * probe_batches);
+        return 1.125 * static_cast<double>((options_.probes + rare_.size()) * probe_batches);
     }
 
     /// What is wanted, or as much of that as the budget allows.
@@ -252,7 +255,7 @@ private:
     const pixel_shares& shares_;
     std::size_t uniform_;
     std::size_t per_batch_{1};
-    std::size_t rare_{0};    ///< further probes, of rare classes
+    std::vector<std::size_t> rare_{};
     double wanted_{0};       ///< samples per batch, by the pilot
     double wanted_cost_{0};  ///< of all probes that were asked for, for one sample in a batch
     bool is_short_{false};   ///< whether the budget does not reach for that

@@ -43,7 +43,7 @@ public:
         }
         slow_ = seems_heavy();
         called_for_ = draw.called_for(heavy_tailed());
-        const std::vector<std::size_t> rare = draw.pixels_of_rare_classes();
+        const std::vector<std::size_t>& rare = draw.rare_pixels();
         extra_ = draw.all(probe, run, rare, draw.allotted(probe, run, rare, audit_part::extra_spread),
                           audit_part::extra_probes);
         count(draw);

@@ -267,10 +267,7 @@ private:
     [[nodiscard]] bool may_be_sharper() const { return !blunt_ && (!sample_->heavy_tailed() || is_patient()); }
 
     /// Whether patience reaches for four times the samples.
-    [[nodiscard]] bool is_patient() const {
-        const double most = options_.audit.patience / square(options_.audit.noise * options_.audit.target);
-        return 4 * static_cast<double>(sample_->samples_per_probe()) <= most;
-    }
+    [[nodiscard]] bool is_patient() const { return detail::is_patient(options_.audit, sample_->samples_per_probe()); }
 
     /// Whether the error seems to stay above the target, or to need much more work.
     [[nodiscard]] bool floor_is_feared() const {
