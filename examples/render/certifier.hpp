@@ -25,6 +25,7 @@
 #include "common/interruption.hpp"
 #include "common/light_set.hpp"
 #include "common/probe_paths.hpp"
+#include "common/progress.hpp"
 #include "render/options.hpp"
 #include "render/passes.hpp"
 #include "render/phases.hpp"
@@ -61,7 +62,10 @@ public:
         o.first_work = 4;
         o.most_work = 1 << 16;
         o.progress = [&](const aglow::until_progress& p) {
-            std::printf("%.0f samples a pixel: mean relative error about %.2f %%\n", p.last.work, 100 * p.last.error);
+            const double more = p.predicted_work / p.last.work - 1;
+            const bool goes_on = more > 0 && aglow::is_finite(more);
+            std::printf("%.0f samples a pixel: mean relative error about %.2f %%%s\n", p.last.work, 100 * p.last.error,
+                        goes_on ? (", about " + spoken(more * (budget.spent() - begun)) + " left").c_str() : "");
             return !budget.is_over();
         };
         const interruptible looking{run_, [&] { return budget.is_over(); }};
